@@ -53,10 +53,10 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   how.before_filming = [&](const validate::FilmingSize& size) {
     display.clear();
     say(options.common,
-        fmt::format(
-            "{} twins will be filmed, and {} to {} more with one thing better; judging by the first, all take at most "
-            "{} of processor time",
-            size.twins, size.least_of_changes, size.most_of_changes, duration_text(size.processor_time_s)));
+        fmt::format("{} twins will be filmed, and another {} to {} with one thing improved. Judging by the first, this "
+                    "takes at most "
+                    "{} of processor time",
+                    size.twins, size.least_of_changes, size.most_of_changes, duration_text(size.processor_time_s)));
   };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());
   const std::string json = report::certificate_json(certificate);
@@ -115,7 +115,7 @@ void add_certify(CLI::App& app, Command& chosen) {
                                ->check(check_above_0);
   add_bare_options(*command, options->bare);
   add_common_options(*command, options->common, "glidelab-out/certify-<name of the first folder>",
-                     "Seed of the twins' noise, clock and calibration, default 1");
+                     "Seed of the twins' noise, clock and calibration; default: 1");
   command->callback([options, bandwidth, &chosen] {
     chosen = [options, bandwidth] {
       options->bare = with_masses(options->bare, options->experiments);

@@ -12,7 +12,6 @@
 #include "core/check/check_recording.h"
 #include "core/track/bare_track.h"
 #include "report/check/check_report.h"
-#include "report/check/finding_words.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {
@@ -46,8 +45,8 @@ void check(const CheckOptions& options) {
   print_answer(options.common.json ? json : report::check_text(found));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!found.usable) {
-    const report::WordedFinding worst = report::worded(found.findings).front();
-    throw base::NotMet(fmt::format("{}: not usable as it is: {}: {}", options.input, worst.about, worst.found));
+    throw base::NotMet(
+        fmt::format("{}: not usable as it is; {} says what to change", options.input, (out / "report.html").string()));
   }
 }
 

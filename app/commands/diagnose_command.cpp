@@ -165,7 +165,7 @@ void diagnose(const DiagnoseCommand& options) {
 void add_diagnose(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<DiagnoseCommand>();
   CLI::App* command = app.add_subcommand(
-      "diagnose", "Find which unmodelled effect, if any, explains the gap between the measured motions and the model");
+      "diagnose", "Find what the simple law leaves out: which effects explain the motions, and how much each explains");
   command
       ->add_option(
           "EXPERIMENT", options->experiments,

@@ -54,7 +54,7 @@ void require_command(const RequireOptions& options) {
     display.clear();
     say(options.common,
         fmt::format("the bound allows {} of {}; they are filmed from the cheapest up, until one reaches the target: "
-                    "about {:.2g} min on {} threads if the first does, {:.2g} min or more if only the last does",
+                    "about {:.2g} min with --jobs {} if the first does, {:.2g} min or more if only the last does",
                     size.close, size.points, size.seconds / 60.0, options.common.jobs,
                     std::max(size.seconds, size.seconds_each) / 60.0));
   };
@@ -105,7 +105,7 @@ void add_require(CLI::App& app, Command& chosen) {
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))
                           ->capture_default_str();
-  command->add_option("--track-runs", options->track_runs, "Number of runs by simulated tracks per camera")
+  command->add_option("--track-runs", options->track_runs, "Number of runs per camera as simulated tracks")
       ->type_name("N")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();

@@ -112,7 +112,7 @@ void only_interrupts(std::string_view, double) {
 
 void say_size(const SweepOptions& options, const validate::SweepEstimate& estimate) {
   say(options.common,
-      fmt::format("{} runs, {} of them still to do: about {} on {} threads, {} of disk space in the end ({} free)",
+      fmt::format("{} runs, {} still to do: about {} with --jobs {}, {} of disk space in the end ({} free)",
                   estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
                   bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
 }

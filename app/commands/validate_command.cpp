@@ -102,7 +102,7 @@ void add_validate(CLI::App& app, Command& chosen) {
                           ->capture_default_str();
   CLI::Option* noise = command
                            ->add_option("--noise-m", options->gate.noise_m,
-                                        "Standard deviation of a position for --write-baseline, default 2e-5; "
+                                        "With --write-baseline: standard deviation of a position; default: 2e-5; "
                                         "--baseline takes the stored one and refuses another")
                            ->type_name("METRES")
                            ->check(check_noise_m);

@@ -198,8 +198,8 @@ std::string misspelt(const CLI::App& app, const std::vector<std::string>& argume
 void group_commands(CLI::App& app) {
   const std::vector<std::pair<const char*, std::vector<const char*>>> groups = {
       {"A recording", {"new", "pattern", "check", "analyze", "certify", "diagnose", "characterize"}},
-      {"A rehearsal", {"simulate", "render", "validate", "sweep", "require"}},
-      {"A class", {"laws", "explore"}},
+      {"Planning and rehearsal", {"simulate", "render", "validate", "sweep", "require"}},
+      {"For the classroom", {"laws", "explore"}},
       {"Tests of the methods", {"coverage", "blind", "challenge"}}};
   for (const auto& [title, names] : groups) {
     for (const char* const name : names) app.get_subcommand(name)->group(title);

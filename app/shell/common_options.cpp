@@ -234,7 +234,7 @@ void add_max_megapixels(CLI::App& command, std::size_t& most_pixels) {
       .add_option_function<double>(
           "--max-megapixels",
           [&most_pixels](double megapixels) { most_pixels = static_cast<std::size_t>(std::llround(1e6 * megapixels)); },
-          fmt::format("The largest image or frame that is read, in millions of pixels (default {:g})",
+          fmt::format("The largest image or frame that is read, in millions of pixels; default: {:g}",
                       1e-6 * static_cast<double>(most_pixels)))
       ->type_name("NUMBER")
       ->check(check_above_0)
@@ -373,7 +373,7 @@ void add_outside_options(CLI::App& command, OutsideOptions& options, const std::
       .add_option("--estimator-name", options.name, "Its name in the results; default: the name of the program file")
       ->type_name("NAME")
       ->needs(judged);
-  command.add_option("--estimator-seconds", options.seconds, "Longest time that one run of it may take")
+  command.add_option("--estimator-seconds", options.seconds, "Longest time that one of its runs may take")
       ->type_name("SECONDS")
       ->check(check_above_0)
       ->needs(judged)

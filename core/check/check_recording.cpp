@@ -194,6 +194,31 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
   return attempts;
 }
 
+/// Where it is fast enough, the sign of its speed; 0 elsewhere.
+int direction_of(std::span<const MotionPoint> points, std::size_t at) {
+  return !points[at].smoothed || points[at].v_m_s == 0.0 ? 0 : points[at].v_m_s < 0.0 ? -1 : 1;
+}
+
+/// Between two stretches of free motion that have the same direction. Where it turns, it bounced, or stood still.
+std::vector<Interruption> interruptions_of(std::span<const MotionPoint> points) {
+  std::vector<Interruption> found;
+  std::optional<std::size_t> free;  // the last point that is used
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].left_out != LeftOut::used) continue;
+    const auto between = points.subspan(free ? *free + 1 : i, free ? i - *free - 1 : 0);
+    const auto handled = [](const MotionPoint& point) {
+      return point.left_out == LeftOut::stop || point.left_out == LeftOut::hand || point.left_out == LeftOut::rest;
+    };
+    const auto first = std::find_if(between.begin(), between.end(), handled);
+    if (first != between.end() && direction_of(points, *free) * direction_of(points, i) > 0) {
+      const auto last = std::find_if(between.rbegin(), between.rend(), handled);
+      found.push_back({first->t_s, last->t_s});
+    }
+    free = i;
+  }
+  return found;
+}
+
 /// The lines of the clips that the analysis would use, and the inclination that follows from them.
 void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt>& attempts, RecordingCheck& check) {
   std::vector<ClipSetup> setups;
@@ -203,6 +228,7 @@ void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt
     setups.push_back(experiment.clips[i]);
     results.push_back(analyze_motion(setups.back(), attempts[i].track, {}));
     check.clips[i].against_launch = results.back().against_launch;
+    check.clips[i].interruptions = interruptions_of(results.back().motion);
     // The noise that the analysis will state, in place of the first estimate; speeds alone have none.
     if (results.back().position_noise_m > 0.0) check.clips[i].position_noise_m = results.back().position_noise_m;
     if (check.clips[i].images) check.clips[i].jumps = results.back().lost_frames.size();

@@ -43,10 +43,14 @@ struct PatternCheck {
 /// From the positions alone (motion_look.h).
 struct MotionLook {
   double distance_m = 0.0;
+  double noise_m = 0.0;                     ///< of a position, from its neighbours
+  std::optional<double> counted;            ///< the step, if x goes on by the same from row to row, as no body does
   double frame_s = 0.0;                     ///< mean time from one position to the next
   std::optional<double> acceleration_m_s2;  ///< typical size; none if noise hides it, or a force was recorded
   double acceleration_sd_m_s2 = 0.0;        ///< of one of the parabolas that it is the median of
   double speeding_up_m_s2 = 0.0;            ///< the most by which it surely speeds up over a metre or more; 0: nowhere
+  double push_m_s2 = 0.0;  ///< by which it surely speeds up at first, beyond any incline; 0: it does not
+  double pushed_until_s = 0.0;
   std::size_t turns = 0;
   bool oscillates = false;
   double bend = 0.0;           ///< of the path in the image: sagitta over length
@@ -74,6 +78,12 @@ struct PathBrightness {
 /// square of its speed, in s^2: a twelfth of the square of the exposure.
 struct SmearSlope {
   double s2 = 0.0, sd_s2 = 0.0;
+};
+
+/// Positions between two stretches of free motion in the same direction that follow the law of neither: a stop, a blow,
+/// a hand.
+struct Interruption {
+  double from_s = 0.0, to_s = 0.0;
 };
 
 struct ClipCheck {
@@ -122,6 +132,7 @@ struct ClipCheck {
   std::optional<double> position_noise_m;  ///< as the analysis will state it
   MotionLook motion;
   std::optional<AgainstLaunch> against_launch;  ///< of the motion, as the analysis will find it
+  std::vector<Interruption> interruptions;      ///< which the analysis will leave out
   double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen
   std::vector<PixelPlace> path;                 ///< at most 200 positions
   std::vector<MarkerSighting> sightings;

@@ -48,6 +48,21 @@ struct FaultSentence {
                         100.0 * of.bend),
             "the law of motion holds along a straight line: film a straight track, not a free flight or a swing"};
   }
+  FaultWords operator()(const Counted& of) const {
+    return of.step == 1.0
+               ? FaultWords{"x goes up by exactly 1 from row to row: it counts something, and is no position",
+                            "say which column holds the positions (--column)"}
+               : FaultWords{fmt::format("x changes by {:.6g} from row to row, a part of a turn: it is an "
+                                        "angle, and no position",
+                                        of.step),
+                            "give positions along a straight line"};
+  }
+  FaultWords operator()(const LostInNoise& of) const {
+    return {fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
+                        "motion shows",
+                        of.noise_m, of.distance_m),
+            "see whether the tracker or the sensor followed the body, and record again with less scatter"};
+  }
 };
 
 }  // namespace

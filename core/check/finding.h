@@ -363,7 +363,17 @@ struct CurvedPath {
   double bend = 0.0;  ///< sagitta over length
 };
 
-using MotionFault = std::variant<Oscillation, BeyondGravity, FreeFall, CurvedPath>;
+/// x goes on by the same step from row to row: by 1, or by a part of a turn.
+struct Counted {
+  double step = 1.0;
+};
+
+/// The scatter of the positions (one standard deviation) is as large as the motion.
+struct LostInNoise {
+  double noise_m = 0.0, distance_m = 0.0;
+};
+
+using MotionFault = std::variant<Oscillation, BeyondGravity, FreeFall, CurvedPath, Counted, LostInNoise>;
 
 /// "this is an oscillation, …", and what to do. Worded here because a diagnosis refuses such a motion with these
 /// sentences.
@@ -383,6 +393,11 @@ struct LongRun {
   double distance_m = 0.0;
 };
 
+/// At first it speeds up by more than any incline gives.
+struct Pushed {
+  double acceleration_m_s2 = 0.0, until_s = 0.0;
+};
+
 /// Positions are far apart in time.
 struct SlowFrames {
   double apart_s = 0.0;
@@ -398,23 +413,31 @@ struct Gaps {
   double longest_s = 0.0;
 };
 
+/// The first of `count` interruptions.
+struct Interrupted {
+  double from_s = 0.0, to_s = 0.0;
+  std::size_t count = 1;
+};
+
 struct Smoothed {
   double share = 0.0;  ///< of the distance: the scatter is smaller
 };
 
 }  // namespace found
 
-using AnyFound = std::variant<
-    Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
-    found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
-    found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
-    found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark, found::LittleContrast,
-    found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls, found::ShadowEdge, found::LightFalls,
-    found::LightFlickers, found::StrongCompression, found::OtherRateInFile, found::UnevenStamps, found::Jumps,
-    found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart, found::MarkerSizeOff,
-    found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit, found::ScaleInUnit,
-    found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate, found::MotionFault,
-    found::FallAboveGravity, found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
+using AnyFound =
+    std::variant<Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
+                 found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
+                 found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
+                 found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark,
+                 found::LittleContrast, found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls,
+                 found::ShadowEdge, found::LightFalls, found::LightFlickers, found::StrongCompression,
+                 found::OtherRateInFile, found::UnevenStamps, found::Jumps, found::FramesRepeated,
+                 found::AssumedForFile, found::NoPlumbAngle, found::MassesApart, found::MarkerSizeOff,
+                 found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
+                 found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians,
+                 found::WrongFrameRate, found::MotionFault, found::FallAboveGravity, found::LongRun, found::Pushed,
+                 found::SlowFrames, found::FallsSlowly, found::Gaps, found::Interrupted, found::Smoothed>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

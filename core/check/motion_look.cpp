@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <variant>
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
+#include "core/experiment/local_gravity.h"
 #include "core/math/parabola.h"
 #include "core/math/quantile.h"
 #include "core/motion/free/motion.h"
@@ -41,8 +43,23 @@ constexpr double kGapSteps = 3.0;                           // median steps: a l
 constexpr double kMostUnseen = 0.2;                         // of the time
 constexpr double kLongestPush_m = 1.0;                      // at 2 g it would give 6 m/s
 constexpr double kOffStretch = 0.05;                        // of the distance that a stretch covers
+constexpr double kLostInNoise = 0.25;                       // of the distance: positions at rest span more than that
 constexpr double kSureSds = 3.0;                            // of the acceleration of a stretch
 constexpr double kKeepsSpeed = 0.75;                        // of the speed at its end
+
+/// The step by which all positions go on, if it is that of a count, 1, or of turns, a quarter turn in radians or a
+/// multiple. Marks in equal steps, as those of light gates, have others.
+std::optional<double> counted_step(std::span<const double> x_m) {
+  constexpr double kSame = 1e-5, kMostQuarters = 8.0;
+  const double step = x_m[1] - x_m[0];
+  for (std::size_t i = 2; i < x_m.size(); ++i) {
+    if (!(std::abs(x_m[i] - x_m[i - 1] - step) <= kSame * std::abs(step))) return {};
+  }
+  const double quarters = std::abs(step) / (0.5 * std::numbers::pi);
+  const bool turns = std::round(quarters) >= 1.0 && quarters < kMostQuarters + 0.5 &&
+                     std::abs(quarters - std::round(quarters)) < kSame * quarters;
+  return step == 1.0 || turns ? std::optional(step) : std::nullopt;
+}
 
 /// Standard deviation of a by n even points over a time T: its variance is 720 s²/(n T⁴).
 double sd_of_a(double noise_m, std::size_t points, double span_s) {
@@ -106,6 +123,25 @@ double most_speeding_up(std::span<const double> t_s, std::span<const double> x_m
     }
   }
   return most;
+}
+
+/// A push at the start: parabolas through a few positions each, as long as they surely speed up by more than gravity.
+void look_for_push(std::span<const double> t_s, std::span<const double> x_m, double noise_m, MotionLook& look) {
+  constexpr std::size_t kFew = 5, kFewestOfPush = 2;  // positions of a parabola, parabolas of a push
+  std::size_t pushes = 0;
+  for (std::size_t from = 0; from + kFew <= x_m.size() / 2; ++from) {
+    const auto t = t_s.subspan(from, kFew), x = x_m.subspan(from, kFew);
+    const Parabola parabola = parabola_through(t, x);
+    const double span = t.back() - t.front(), at_end = parabola.v + 0.5 * parabola.a * span;
+    const double sure = std::abs(parabola.a) - kSureSds * sd_of_a(noise_m, kFew, span);
+    const bool pushed = sure > kAboveGravity * kStandardGravity_m_s2 && at_end * parabola.a > 0.0;
+    if (!pushed && pushes > 0) break;
+    if (!pushed) continue;
+    ++pushes;
+    look.push_m_s2 = std::max(look.push_m_s2, std::abs(parabola.a));
+    look.pushed_until_s = t.back();
+  }
+  if (pushes < kFewestOfPush) look.push_m_s2 = 0.0;
 }
 
 std::size_t turns_in(std::span<const double> x_m, double back_m) {
@@ -180,7 +216,9 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   look.frame_s = (t_s.back() - t_s.front()) / static_cast<double>(t_s.size() - 1);
   look.bend = bend_of(sightings);
   look_for_gaps(t_s, look);
+  look.counted = counted_step(x_m);
   const double noise_m = pilot_noise(t_s, x_m);
+  look.noise_m = noise_m;
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
   const Motion steady = without_outliers(t_s, x_m);
@@ -191,6 +229,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
     find_acceleration(t_s, x_m, x_m.size(), noise_m, look);
   }
   look.speeding_up_m_s2 = most_speeding_up(t_s, x_m, noise_m);
+  look_for_push(t_s, x_m, noise_m, look);
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
   if (look.turns >= kFewTurns) {
@@ -272,7 +311,11 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   const double a = look.acceleration_m_s2.value_or(0.0), sure = a - kMedian * look.acceleration_sd_m_s2;
   const bool falls = may_fall(setup);
   const double most = (falls ? kFarAboveGravity : kAboveGravity) * gravity_m_s2;
-  if (look.oscillates) {
+  if (look.counted) {
+    book.add(Severity::unusable, found::Counted{*look.counted});
+  } else if (look.noise_m > kLostInNoise * look.distance_m) {
+    book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
+  } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
   } else if (sure > most || look.speeding_up_m_s2 > kFarAboveGravity * gravity_m_s2) {
     book.add(Severity::unusable,
@@ -285,8 +328,11 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   } else if (look.distance_m > (falls ? kLongFall_m : kLongRange_m)) {
     book.add(Severity::change, found::LongRun{look.distance_m}, Topic::length);
   }
-  if (look.frame_s > kSlowFrames_s) book.add(Severity::change, found::SlowFrames{look.frame_s});
-  if (look.unseen > kMostUnseen && look.frame_s <= kSlowFrames_s) {
+  if (findings.empty() && !falls && look.push_m_s2 > 0.0) {
+    book.add(Severity::change, found::Pushed{look.push_m_s2, look.pushed_until_s});
+  }
+  if (look.frame_s >= kSlowFrames_s) book.add(Severity::change, found::SlowFrames{look.frame_s});
+  if (look.unseen > kMostUnseen && look.frame_s < kSlowFrames_s) {
     book.add(Severity::change, found::Gaps{look.unseen, look.longest_gap_s});
   }
   if (look.bend > kMostBend) book.add(Severity::unusable, found::CurvedPath{look.bend});

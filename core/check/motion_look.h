@@ -5,10 +5,10 @@
 /// drag aside, no incline gives more than g. That median says nothing of a fall at its terminal speed. So the most by
 /// which the body speeds up counts as well, over a metre or more: a body gains no more than g t, and a push that gains
 /// more is shorter. A scale or a frame rate that is somewhat off makes a fall exceed g by some per cent; a wrong unit
-/// makes it exceed g by far. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of
-/// a over six turns or more, or 95 % of it over two to five. Bend: the sagitta of the marker's path in the image over
-/// its length, by a parabola. Smooth: the scatter about neighbouring positions is below 1e-7 of the distance, which no
-/// camera or sensor reaches.
+/// makes it exceed g by far. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a over six turns
+/// or more, or 95 % of it over two to five, of eight parabolas or more. Bend: the sagitta of the marker's path in the
+/// image over its length, by a parabola. Smooth: the scatter about neighbouring positions is below 1e-7 of the
+/// distance, which no camera or sensor reaches.
 #pragma once
 
 #include <optional>

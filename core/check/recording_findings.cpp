@@ -195,6 +195,10 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     });
     book.add(clip.seen < (falls ? kLeastOfFall : kLeastOnTrack) ? Severity::unusable : Severity::change, few);
   }
+  if (!clip.interruptions.empty()) {
+    const Interruption& first = clip.interruptions.front();
+    book.add(Severity::change, found::Interrupted{first.from_s, first.to_s, clip.interruptions.size()});
+  }
   for (const Note& note : clip.notes) {
     const bool reported =
         std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||

@@ -40,6 +40,14 @@ std::vector<EqualRun> equal_runs(std::span<const double> x) {
   return runs;
 }
 
+std::set<double> values_of_long(const std::vector<EqualRun>& runs) {
+  std::set<double> values;
+  for (const EqualRun& run : runs) {
+    if (run.size() >= kFewestEqual) values.insert(run.value);
+  }
+  return values;
+}
+
 /// The speeds of all steps, and which of them touch no value that some long run has: where it may mean that nothing is
 /// seen, single ones do so as well.
 class Steps {
@@ -47,10 +55,7 @@ class Steps {
   Steps(std::span<const double> t_s, std::span<const double> x, const std::vector<EqualRun>& runs)
       : speed_(x.size() > 0 ? x.size() - 1 : 0), counts_(speed_.size(), true) {
     for (std::size_t i = 0; i < speed_.size(); ++i) speed_[i] = std::abs(x[i + 1] - x[i]) / (t_s[i + 1] - t_s[i]);
-    std::set<double> of_long_runs;
-    for (const EqualRun& run : runs) {
-      if (run.size() >= kFewestEqual) of_long_runs.insert(run.value);
-    }
+    const std::set<double> of_long_runs = values_of_long(runs);
     for (const EqualRun& run : runs) {
       if (!of_long_runs.contains(run.value)) continue;
       const std::size_t from = run.from > 0 ? run.from - 1 : 0, to = std::min(run.to, speed_.size());
@@ -247,9 +252,12 @@ std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std
   if (std::ranges::none_of(runs, [](const EqualRun& run) { return run.size() >= kFewestEqual; })) return {};
   const Steps steps(t_s, x, runs);
   if (!steps.enough()) return {};
+  const std::set<double> of_long_runs = values_of_long(runs);
   std::set<double> values;
   for (const EqualRun& run : runs) {
-    if (run.size() >= kFewestEqual && has_only_jumps(run, steps, x.size())) values.insert(run.value);
+    const bool within = run.from > 0 && run.to < x.size();
+    if (!of_long_runs.contains(run.value) || (run.size() < kFewestEqual && !within)) continue;
+    if (has_only_jumps(run, steps, x.size())) values.insert(run.value);
   }
   if (values.empty()) return {};
   UnseenPositions unseen;

@@ -26,7 +26,8 @@ struct UnseenPositions {
 /// of the motion. A rest is reached and left at that speed, however coarse the positions or the times are.
 ///
 /// A value found in this way means the same elsewhere: runs of four at this value are not places either, nor are
-/// shorter ones with jumps on all sides.
+/// shorter ones with jumps on all sides. Of a value that also stays for four or more, such a short run within the
+/// recording is enough: zeros before a body comes into view, near to where it then is, and zeros where it was lost.
 ///
 /// Times rise. None if nothing is unseen, or if fewer than eight steps outside the runs show the speed of the motion.
 std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std::span<const double> x);

@@ -274,6 +274,22 @@ base::Issue thousands_or_decimals(const ColumnTable& table, std::size_t column, 
                   name)};
 }
 
+/// Numbers of which some have a decimal point and others a decimal comma: a row of data above the first that is read,
+/// and no header.
+bool is_row_of_other_sign(const Fields& row) {
+  const auto numbers = [&](char decimal) {
+    return std::ranges::count_if(row, [&](std::string_view field) { return number_in(field, decimal).has_value(); });
+  };
+  const bool all =
+      std::ranges::all_of(row, [](std::string_view field) { return number_in(field, '.') || number_in(field, ','); });
+  return all && numbers('.') < std::ssize(row) && numbers(',') < std::ssize(row);
+}
+
+base::Issue other_sign(const std::string& file, const Line& line, const Format& format) {
+  return {file, line.number, "", fmt::format("\"{}\", with a decimal point and a decimal comma", line.text),
+          fmt::format("a decimal {} throughout, as below", format.decimal == ',' ? "comma" : "point")};
+}
+
 /// A delimiter at the end of each line makes a column without a name and without values.
 void drop_empty_columns_at_end(ColumnTable& table) {
   const auto is_empty = [&](const TableColumn& column) {
@@ -389,9 +405,11 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
                                        fmt::format("at most {} million fields in all", kMostFields / 1'000'000)});
   }
 
+  std::vector<base::Issue> issues;
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {
     if (rows[r].size() < 2) continue;  // a title
+    if (is_row_of_other_sign(rows[r])) issues.push_back(other_sign(table.file, lines[r], *format));
     const bool as_wide = rows[r].size() == width || rows[r].size() == rows[first_data].size();
     if (format->delimiter == kBlanks && !as_wide) continue;  // words of a title
     header.emplace_back(rows[r].begin(), rows[r].end());
@@ -407,7 +425,6 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   }
   table.columns = columns_of_header(header, width);
 
-  std::vector<base::Issue> issues;
   std::vector<char> decimals(width, format->decimal);
   if (format->decimal == kOfColumn) {
     const std::vector<DecimalSign> signs = signs_of(lines, *format);

@@ -42,7 +42,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name);
 /// numbers of a column is an issue for whoever uses that column.
 ColumnTable read_column_table(const std::filesystem::path& file);
 
-/// A complaint about the columns of a table.
+/// An InputError about the columns of a table.
 base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected);
 
 }  // namespace glidelab::core

@@ -73,8 +73,8 @@ bool is_clear(const PathBend& bend) {
          bend.range_m >= kBendOverNoise * bend.noise_m && bend.range_m >= kLeastBend * bend.length_m;
 }
 
-/// A bend of any shape: InputError if it is as large as that of an arc which is refused, or if the path turns to and
-/// fro so much that gravity along it changes by more than any drag; a note if it is clear.
+}  // namespace
+
 void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
                 std::vector<Note>& notes) {
   const PathBend bend = bend_of(path);
@@ -92,8 +92,6 @@ void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const Pl
                   bend.slope_deg),
       straight_motion(table.columns[y].name));
 }
-
-}  // namespace
 
 void note_other_axis(const ColumnTable& table, std::size_t x, std::vector<Note>& notes) {
   const std::size_t y = x + 1;

@@ -173,6 +173,7 @@ std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vect
   const PlanePath path = path_of(second, third);
   if (path.x_m.size() < kFewestOfPath || range_of(path.y_m) > kOtherAxis * range_of(path.x_m)) return {};
   refuse_curve(table, 1, 2, path);
+  judge_bend(table, 1, 2, path, notes);
   // Only if the third follows the second is it a place in the same plane.
   const auto n = static_cast<Eigen::Index>(path.x_m.size());
   Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
@@ -253,8 +254,8 @@ double even_part(const TableColumn& column) {
 
 /// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or goes
 /// back at all where the second has even steps. (Other times with a wrong one among them keep their place, and the
-/// error names its line.) Where both increase, and the second in
-/// far more even steps, it may be the times of a camera or the places of a picket fence.
+/// error names its line.) Where both increase, and the second in far more even steps, it may be the times of a camera
+/// or the places of a picket fence.
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
   constexpr double kFarLess = 0.1, kEven = 1e-3, kNearlyAll = 0.9, kHalf = 0.5;
@@ -302,7 +303,8 @@ bool is_frame_column(const TableColumn& column) {
   return column.unit.empty() && std::find(kNames.begin(), kNames.end(), lower(column.name)) != kNames.end();
 }
 
-std::size_t time_column(const ColumnTable& table, std::size_t place) {
+/// `named`: a person said which column is x. Of two columns the other then holds the times, if they rise.
+std::size_t time_column(const ColumnTable& table, std::size_t place, bool named) {
   if (!table.has_header && table.columns.size() == 2) return 1 - place;
   if (!table.has_header) {
     const std::size_t first = unnamed_time(table);
@@ -316,6 +318,7 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);
   if (times.size() == 1) return times.front();
+  if (named && times.empty() && table.columns.size() == 2 && increases(table.columns[1 - place])) return 1 - place;
   const auto frames = std::find_if(table.columns.begin(), table.columns.end(), is_frame_column);
   if (times.empty() && frames != table.columns.end()) {
     throw wrong_column(
@@ -325,7 +328,8 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   throw wrong_column(table,
                      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
                                  columns_text(table)),
-                     "one, called t or time or with a unit of time; divide frame numbers by the frame rate");
+                     "one, called t or time or with a unit of time (divide frame numbers by the frame rate); of two "
+                     "columns, name the one that is x (--column), and the other is the time");
 }
 
 void note_force(const ColumnTable& table, std::vector<Note>& notes) {
@@ -348,7 +352,7 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes) {
   ChosenColumns chosen = asked.empty() ? place_columns(table, notes) : only(asked_column(table, asked));
-  chosen.time = time_column(table, chosen.place);
+  chosen.time = time_column(table, chosen.place, !asked.empty());
   if (asked.empty() && is_height_column(table.columns[chosen.place])) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
@@ -372,7 +376,7 @@ std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::
   }
   ChosenColumns chosen = only(asked.empty() ? found.front() : asked_column(table, asked));
   if (!std::ranges::count(found, chosen.place)) return {};
-  chosen.time = time_column(table, chosen.place);
+  chosen.time = time_column(table, chosen.place, !asked.empty());
   return chosen;
 }
 

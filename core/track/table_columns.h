@@ -16,8 +16,8 @@
 /// Its time is the nearest column to the left that is named t or time or has a unit of time, of the same run if runs
 /// are stated; otherwise the only one. In a file without a header the first column is the time; of two columns the
 /// second, if it alone increases throughout, in even steps or while the first often goes back, and whichever is not
-/// asked for as x. A note says so if both could be
-/// times; if the second then has far more even steps, x must be asked for.
+/// asked for as x. A note says so if both could be times; if the second then has far more even steps, x must be asked
+/// for.
 #pragma once
 
 #include <cstddef>

@@ -59,6 +59,10 @@ void leave_out(const std::vector<bool>& flagged, TrackData& track) {
 
 }  // namespace
 
+std::string few_points_expectation() {
+  return fmt::format("at least {}: record at a higher rate, or for longer", kFewestTrackPoints);
+}
+
 void leave_out_false_positions(TrackData& track) {
   if (track.x_m.empty()) return;  // speeds
   if (const std::optional<UnseenPositions> unseen = unseen_positions(track.t_s, track.x_m)) {
@@ -112,8 +116,7 @@ std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& serie
                       fmt::format("a time above {}", t_s[i - 1])});
   }
   if (issues.empty() && t_s.size() < kFewestTrackPoints) {
-    issues.push_back(
-        {what, 0, "t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", kFewestTrackPoints)});
+    issues.push_back({what, 0, "t_s", fmt::format("{} points", t_s.size()), few_points_expectation()});
   }
   return issues;
 }
@@ -230,7 +233,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   const bool like_x = y.unit.empty() || across.column == chosen.place;
   const double y_metres = like_x ? metres : downhill.value_or(1) * metres_of(table, y, track.notes);
   const double seconds = seconds_of(table, t, track.notes);
-  if (table.columns.size() > 2) {
+  if (table.columns.size() > 2 || (table.has_header && !is_time_column(t))) {
     const bool run_apart = !x.run.empty() && x.text.find(x.run) == std::string::npos;
     track.notes.emplace_back(ColumnsTaken{x.text, t.text, run_apart ? x.run : ""});
   }
@@ -275,9 +278,12 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   if (track.t_s.size() < kFewestTrackPoints) {
-    throw base::InputError(base::Issue{table.file, 0, fmt::format("column \"{}\"", x.text),
-                                       fmt::format("{} points", track.t_s.size()),
-                                       fmt::format("at least {}", kFewestTrackPoints)});
+    const std::size_t empty = table.line.size() - track.t_s.size();
+    throw base::InputError(
+        base::Issue{table.file, 0, fmt::format("column \"{}\"", x.text),
+                    fmt::format("{} points{}", track.t_s.size(),
+                                empty == 0 ? "" : fmt::format(", and {} rows without a time or a position", empty)),
+                    few_points_expectation()});
   }
   const double step_s = median_step(track.t_s);
   if (t.unit.empty() && step_s > kSlowestUnstated_s) {
@@ -310,8 +316,8 @@ void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   if (t_s.size() < kFewestTrackPoints) {
-    throw base::InputError(base::Issue{table.file, 0, "", fmt::format("{} points", t_s.size()),
-                                       fmt::format("at least {}", kFewestTrackPoints)});
+    throw base::InputError(
+        base::Issue{table.file, 0, "", fmt::format("{} points", t_s.size()), few_points_expectation()});
   }
 }
 

@@ -21,6 +21,9 @@ namespace glidelab::core {
 /// again are needed for the noise.
 inline constexpr std::size_t kFewestTrackPoints = 8;
 
+/// "at least 8: …", for messages about a track of fewer points.
+std::string few_points_expectation();
+
 /// Whether a table of speeds without positions is taken.
 enum class SpeedsAlone { refused, taken };
 

@@ -14,10 +14,10 @@
 #include "base/math/angles.h"
 #include "core/experiment/file_names.h"
 #include "core/track/column_table.h"
+#include "core/track/container/zip_archive.h"
 #include "core/track/table_columns.h"
 #include "core/track/tracker_xml.h"
 #include "core/track/workbook.h"
-#include "core/track/zip_archive.h"
 
 namespace glidelab::core {
 namespace {
@@ -284,8 +284,7 @@ TrackData read_tracker_project(const fs::path& file, std::optional<Downhill> dow
   const std::vector<Place> places = places_of(project, *chosen.mass, metres, track.notes);
   if (places.size() < kFewestTrackPoints) {
     throw base::InputError(base::Issue{file.string(), 0, fmt::format("point mass \"{}\"", chosen.mass->name),
-                                       fmt::format("{} positions", places.size()),
-                                       fmt::format("at least {}", kFewestTrackPoints)});
+                                       fmt::format("{} positions", places.size()), few_points_expectation()});
   }
   const Downhill down = downhill ? *downhill : found_downhill(project, places);
   const bool along_y = is_along_y(down);

@@ -10,7 +10,7 @@
 
 #include "base/errors.h"
 #include "base/math/angles.h"
-#include "core/track/xml_document.h"
+#include "core/track/container/xml_document.h"
 
 namespace glidelab::core {
 namespace {

@@ -17,9 +17,9 @@
 
 #include "base/errors.h"
 #include "core/experiment/file_names.h"
+#include "core/track/container/xml_document.h"
+#include "core/track/container/zip_archive.h"
 #include "core/track/number_field.h"
-#include "core/track/xml_document.h"
-#include "core/track/zip_archive.h"
 
 namespace glidelab::core {
 namespace {

@@ -11,6 +11,7 @@
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/fit_step.h"
+#include "diagnose/fit/integrated_start.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -251,6 +252,11 @@ double drag_of_air_like(const MotionFit& fit, double least) {
 
 }  // namespace
 
+bool is_misfit(const TrackSet& set, const MotionFit& fit) {
+  constexpr double kMostChi2PerPosition = 1.5;
+  return fit.cost / static_cast<double>(points_of(set)) > kMostChi2PerPosition;
+}
+
 double chi2_of_stated(const MotionFit& fit) {
   double chi2 = 0.0;
   for (const FitStatement& one : fit.statements) {
@@ -316,6 +322,12 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
     if (fit.cost < best.cost || !std::isfinite(best.cost)) best = std::move(fit);
   }
   if (std::optional<MotionFit> again = by_small_steps(set, base, effect, best)) best = std::move(*again);
+  if (base.effects.empty() && (is_misfit(set, best) || !std::isfinite(best.cost))) {
+    if (const std::optional<FitPoint> integrated = integrated_start(set, effect)) {
+      MotionFit fit = descended(set, effects, *integrated, base.late, descent_options());
+      if (fit.cost < best.cost || !std::isfinite(best.cost)) best = std::move(fit);
+    }
+  }
   return finished(set, std::move(best));
 }
 

@@ -52,6 +52,9 @@ struct MotionFit {
   int iterations = 0;
 };
 
+/// Whether a fit leaves so much that the motion counts as not explained: chi² per position above 1.5.
+bool is_misfit(const TrackSet& set, const MotionFit& fit);
+
 /// What the inclinations that the experimenter states add to chi² at a fit.
 double chi2_of_stated(const MotionFit& fit);
 
@@ -79,7 +82,8 @@ MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 
 /// Fits one more effect than `base` has, from the start that a search found. If the result is worse than `base`, which
 /// is the same model with the effect absent, the fit starts again from `base`, by small steps, and the better of the
-/// two is returned. So its cost is never above that of `base`.
+/// two is returned. So its cost is never above that of `base`. A bumper or a cable that is added to a nominal model
+/// which follows no bounce is also fitted from the integrated positions (integrated_start.h).
 MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start);
 
 /// `fit`; or, if `base` fits better, a fit that starts there, with the additional effect of `fit` absent.

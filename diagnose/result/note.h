@@ -203,12 +203,17 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
+/// With the recorded force reversed, the nominal model follows the positions far better.
+struct ForceReversed {
+  double part_of_chi2 = 0.0;  ///< that is then left
+};
+
 using AnyNote =
     std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, HandExplained, SetAside,
                  PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps,
                  OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline,
                  TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff, NoMassStated, OfCamera,
-                 SensorPositions, OneOrigin, SuspectedFall, OfReading, DoubtfulUnit, ImpossibleSizes>;
+                 SensorPositions, OneOrigin, SuspectedFall, OfReading, DoubtfulUnit, ImpossibleSizes, ForceReversed>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

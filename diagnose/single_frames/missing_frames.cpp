@@ -199,12 +199,6 @@ MissingFrames with_hidden(const TrackSet& set, MissingFrames all, int jobs) {
   return all;
 }
 
-double points_of(const TrackSet& set) {
-  double points = 0.0;
-  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
-  return points;
-}
-
 /// Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
 double penalty_of(std::size_t count, double points) {
   const double share = static_cast<double>(count) / points;
@@ -236,7 +230,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int
   found.effect.effect = effect_index(ids::dropped_frames);
   found.fit = fit;
   found.fit.late.clear();
-  const double points = points_of(set);
+  const auto points = static_cast<double>(points_of(set));
   for (const TrackedMotion& motion : set.motions) found.fit.late.emplace_back(motion.t_s.size(), 0.0);
   // If losses are close together, each search finds some that another misses: the likeliest result counts.
   const LostBefore by_parabolas = plain_losses(set), by_analysis = analysed_losses(set);
@@ -267,7 +261,7 @@ MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& wit
   known.effect.effect = effect_index(ids::dropped_frames);
   known.fit = with_losses;
   known.count = missing_in(set, with_losses);
-  const double points = points_of(set);
+  const auto points = static_cast<double>(points_of(set));
   MissingFrames all = with_hidden(set, known, 1);
   if (!lowers(all.fit, all.count, known) || all.fit.cost >= kMostChi2PerPoint * points) all = known;
   describe(0.5 * (with_losses.cost - all.fit.cost), penalty_of(all.count, points) - penalty_of(known.count, points),

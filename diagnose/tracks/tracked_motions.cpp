@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/experiment/clip_setup.h"
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -20,6 +22,12 @@ constexpr double kNearlyAsCertain = 2.0;                       // relative error
 
 bool is_fall(const TrackGroup& group) {
   return core::is_fall(group.stated_rad);
+}
+
+std::size_t points_of(const TrackSet& set) {
+  std::size_t points = 0;
+  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+  return points;
 }
 
 double lightest_kg(const TrackSet& set) {

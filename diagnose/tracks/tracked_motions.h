@@ -129,6 +129,9 @@ struct TrackSet {
   std::size_t moving = 0;    ///< frames of free motion, and disputed ones
 };
 
+/// The number of positions of all motions.
+std::size_t points_of(const TrackSet& set);
+
 /// The mass of the lightest body, in kg.
 double lightest_kg(const TrackSet& set);
 

@@ -142,7 +142,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed);
     const MotionFit* best = best_by_evidence(comparison);
-    if (trimmed && !(best != nullptr && explains_disputed(set, *best, *trimmed))) {
+    if (trimmed && !(best != nullptr && explains_disputed(set, comparison.fits.front(), *best, *trimmed))) {
       set = std::move(*trimmed);
       with_hand = 0;
       progress("weighing explanations", 0.5);
@@ -151,6 +151,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     }
   }
   if (settle_noise_again(best_fit(comparison), set)) comparison = compare(0.9, 0.9);
+  if (const auto reversed = reversed_force(set, comparison.fits.front())) set.notes.emplace_back(*reversed);
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
   quote_tables(diagnosis);
   if (const std::string* effect = with_hand > 0 ? named_of_hand(diagnosis) : nullptr) {

@@ -10,12 +10,12 @@
 
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
-#include "diagnose/causes/recovered.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/pictures/image_evidence.h"
+#include "diagnose/recovered/recovered.h"
 #include "diagnose/scan/effect_scan.h"
 #include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/verdict/settled_motions.h"
@@ -186,7 +186,7 @@ GivenCauses fit_given_causes(core::AnalysisResults results, const std::vector<co
   if (of.set.disputed > 0 && is_misfit(of.set, of.fit)) {
     // The causes do not explain the hand and the stops, so these are what the analysis took them for.
     std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed);
-    if (trimmed && !explains_disputed(of.set, of.fit, *trimmed)) {
+    if (trimmed && !explains_disputed(of.set, of.nominal, of.fit, *trimmed)) {
       of = fits_of(std::move(*trimmed), images, effects, option, progress);
     }
   }

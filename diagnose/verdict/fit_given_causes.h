@@ -1,8 +1,9 @@
 /// The fit of all motions with user-named causes in the model, in place of those that a diagnosis finds.
 ///
-/// Tracks, noise, effects, fit and remainder are those of a diagnosis (diagnose.h, causes/recovered.h). If a diagnosis
-/// names these causes and is certain of them, its `recovered` has the same numbers. No explanation is weighed. Up to
-/// three causes are added in every order, more in the given order and its reverse, and the best fit is kept.
+/// Tracks, noise, effects, fit and remainder are those of a diagnosis (diagnose.h, recovered/recovered.h). If a
+/// diagnosis names these causes and is certain of them, its `recovered` has the same numbers. No explanation is
+/// weighed. Up to three causes are added in every order, more in the given order and its reverse, and the best fit is
+/// kept.
 #pragma once
 
 #include <optional>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnose/causes/cause_weighing.h"
-#include "diagnose/causes/recovered.h"
+#include "diagnose/recovered/recovered.h"
 #include "diagnose/result/diagnosis.h"
 
 namespace glidelab::diagnose {

@@ -1,6 +1,7 @@
 #include "diagnose/verdict/named_explanation.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <set>
 
@@ -116,19 +117,29 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
 }
 
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
+  constexpr double kByChance = 0.05;  // that sizes which are all 0 are together so far from it
   const SizeUncertainty uncertainty(set, fit);
   const auto& globals = fit.layout->globals();
   return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {
     const EffectInfo& info = effect_list()[e];
     bool has_common = false;
+    double sizes = 0.0, chi2 = 0.0;
     for (std::size_t g = 0; g < globals.size(); ++g) {
       if (globals[g].parameter == nullptr || globals[g].effect != e) continue;
       const std::size_t slot = globals[g].parameter->slot.parameter;
       const bool is_size = slot >= info.law.size && slot < info.law.size + info.law.sizes;
-      if (!is_size || globals[g].parameter->each != Each::experiment || info.search == Search::spread) continue;
       const auto at = static_cast<Eigen::Index>(g);
+      if (info.search == Search::spread) {
+        sizes += 1.0;
+        chi2 += std::pow(fit.at.global[at] / uncertainty.sd(at), 2);
+        continue;
+      }
+      if (!is_size || globals[g].parameter->each != Each::experiment) continue;
       if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
       has_common = true;
+    }
+    if (sizes > 0.0 && !follows_each_clip(e)) {
+      return chi2 > boost::math::quantile(boost::math::complement(boost::math::chi_squared(sizes), kByChance));
     }
     return !has_common;
   });

@@ -26,8 +26,9 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
 /// the names that these data cannot tell apart. Null if these are all causes of `best`, or if no fit has them alone.
 const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
-/// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
-/// have in common are looked at: others count as certain.
+/// Whether the size of one of these effects of a fit is larger than its standard deviation, or whether the several
+/// sizes of one (at several places, of each configuration) are together farther from 0 than chance brings them in one
+/// of 20 cases. Sizes that clips do not have in common are not looked at and count as certain.
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects);
 
 /// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell

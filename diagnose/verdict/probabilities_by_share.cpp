@@ -1,8 +1,10 @@
 #include "diagnose/verdict/probabilities_by_share.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "base/math/log_sum.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/effects/effect_library.h"
 
@@ -86,6 +88,32 @@ void set_unknown(double unknown, Comparison& comparison) {
   for (double& probability : comparison.effect_probability) probability *= factor;
   comparison.none *= factor;
   comparison.unknown = unknown;
+}
+
+bool trust_stated(Comparison& comparison) {
+  constexpr double kWrongStatement = 0.1;
+  const MotionFit& nominal = comparison.fits.front();
+  std::vector<double> logs;
+  std::vector<Hypothesis*> resolving;
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.effects.size() != 1 || one.fit <= 0) continue;
+    if (gain_in_stated(nominal, comparison.fits[static_cast<std::size_t>(one.fit)]) < kClearInStated) continue;
+    resolving.push_back(&one);
+    logs.push_back(one.log_evidence + log_prior_odds(comparison, one));
+  }
+  if (resolving.empty()) return false;
+  const double unknown = std::exchange(comparison.unknown, kWrongStatement);
+  for (Hypothesis& one : comparison.all) {
+    one.probability *= one.unnamed && unknown > 0.0 ? kWrongStatement / unknown : 0.0;
+  }
+  comparison.none = 0.0;
+  const double all = base::log_sum(logs);
+  for (std::size_t k = 0; k < resolving.size(); ++k) {
+    resolving[k]->probability = (1.0 - kWrongStatement) * std::exp(logs[k] - all);
+  }
+  sum_of_effects(comparison);
+  sort_by_probability(comparison);
+  return true;
 }
 
 void move_minorities_to_unknown(Comparison& comparison) {

@@ -32,13 +32,6 @@ constexpr double kLeastContradictionSds = 5.0;   // standard deviations between 
 constexpr double kLatestLaunch_s = 0.2;          // a motion that starts later is not the launch
 constexpr std::size_t kFirstPoints = 8;          // which show the direction of the launch,
 constexpr double kOpposite_sd = 10.0;            // by a displacement of so many standard deviations of a position
-constexpr double kMostChi2PerPosition = 1.5;     // chi² per position above which the motion counts as not explained
-
-std::size_t points_of(const TrackSet& set) {
-  std::size_t points = 0;
-  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
-  return points;
-}
 
 /// InputError with an issue for each clip if all of them together have too little motion.
 void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
@@ -229,7 +222,38 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
   return set;
 }
 
-bool explains_disputed(const TrackSet& set, const MotionFit& fit, const TrackSet& trimmed) {
+namespace {
+
+/// Whether `trimmed` has a position of this clip at this time.
+bool has_position(const TrackSet& trimmed, std::size_t clip, double t_s) {
+  return std::any_of(trimmed.motions.begin(), trimmed.motions.end(), [&](const TrackedMotion& motion) {
+    return motion.clip == clip && std::binary_search(motion.t_s.begin(), motion.t_s.end(), t_s);
+  });
+}
+
+/// Whether a law explains the positions that `trimmed` lacks: of what the nominal model leaves of them, in chi², beyond
+/// their noise, a fit with the law leaves at most a tenth.
+bool explains_by_law(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
+  constexpr double kMostLeft = 0.1;
+  const auto is_law = [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search) && !follows_each_clip(e); };
+  if (!std::any_of(fit.effects.begin(), fit.effects.end(), is_law)) return false;
+  double before = 0.0, after = 0.0;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
+      if (motion.outlier[p] != 0 || has_position(trimmed, motion.clip, motion.t_s[p])) continue;
+      const auto at = static_cast<Eigen::Index>(p);
+      before += std::pow(nominal.motions[i].residual[at], 2) - 1.0;
+      after += std::pow(fit.motions[i].residual[at], 2) - 1.0;
+    }
+  }
+  return before > 0.0 && after < kMostLeft * before;
+}
+
+}  // namespace
+
+bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
+  if (explains_by_law(set, nominal, fit, trimmed)) return true;
   constexpr double kAboutAsFar = 2.0;
   const bool acts = std::any_of(fit.effects.begin(), fit.effects.end(), [](std::size_t e) {
     return e == effect_index(ids::end_stop) || e == effect_index(ids::tether);
@@ -241,13 +265,21 @@ bool explains_disputed(const TrackSet& set, const MotionFit& fit, const TrackSet
   return held_out_gap(set, fit).value < kAboutAsFar * std::max(1.0, held_out_gap(trimmed, fit_nominal(trimmed)).value);
 }
 
-bool is_misfit(const TrackSet& set, const MotionFit& fit) {
-  return fit.cost / static_cast<double>(points_of(set)) > kMostChi2PerPosition;
-}
-
 void settle_noise(const ImageEvidence& images, TrackSet& set) {
   note_loss(images, set);
   settle(set);
+}
+
+std::optional<ForceReversed> reversed_force(const TrackSet& set, const MotionFit& nominal) {
+  constexpr double kFarBetter = 0.25;
+  const auto driven = [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); };
+  if (!std::any_of(set.motions.begin(), set.motions.end(), driven) || !is_misfit(set, nominal)) return {};
+  TrackSet reversed = set;
+  for (TrackedMotion& motion : reversed.motions) {
+    for (double& force : motion.known.force_n) force = -force;
+  }
+  const double part = fit_nominal(reversed, nominal.late).cost / nominal.cost;
+  return part < kFarBetter ? std::optional(ForceReversed{part}) : std::nullopt;
 }
 
 bool settle_noise_again(const MotionFit& explanation, TrackSet& set) {

@@ -27,21 +27,22 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
 std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed);
 
-/// Whether an end stop, a cable or lost frames act in a fit to `set` and explain the frames that `trimmed` lacks, which
-/// look like a hand or a stop: held-out positions lie about as far off as without these frames. What is left is then
-/// something else, which acts throughout.
-bool explains_disputed(const TrackSet& set, const MotionFit& fit, const TrackSet& trimmed);
+/// Whether a fit to `set` explains the frames that `trimmed` lacks, which look like a hand or a stop. A law does if it
+/// leaves at most a tenth of what the nominal model leaves of them. An end stop, a cable or lost frames do if held-out
+/// positions lie about as far off as without these frames. What is left is then something else, which acts throughout.
+bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed);
 
 /// Finds the noise of every position from single frames and from what the images show of a codec, and sets outliers
 /// aside. Missing frames are corrected first: a jump is neither noise nor an outlier.
 void settle_noise(const ImageEvidence& images, TrackSet& set);
 
+/// Whether the nominal model, whose fit is `nominal`, would follow the motions far better with the recorded forces
+/// reversed: with a quarter of its chi² or less, where that is a misfit.
+std::optional<ForceReversed> reversed_force(const TrackSet& set, const MotionFit& nominal);
+
 /// What the nominal model lacks of a strong effect (a bounce, the drag of a fall) is in part taken for noise of filmed
 /// positions. If an explanation leaves less than half of that noise's variance, finds the noise anew from what it
 /// leaves. Whether it did.
 bool settle_noise_again(const MotionFit& explanation, TrackSet& set);
-
-/// Whether a fit leaves so much that the motion counts as not explained: chi² per position above 1.5.
-bool is_misfit(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

@@ -62,8 +62,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   if (fitted == nullptr) return parameters;
   const MotionFit& fit = *fitted;
   if (parameters.empty() && effect == effect_index(ids::dropped_frames)) {
-    double points = 0.0;
-    for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+    const auto points = static_cast<double>(points_of(set));
     const auto count = static_cast<double>(missing_in(set, fit));
     if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
   }
@@ -325,7 +324,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
         [](const std::string& id) { return std::string(effect_list()[effect_index(id)].words); }, diagnosis);
     diagnosis.stage = diagnosis.effects.front().stage;
   }
-  for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
+  diagnosis.points = points_of(set);
   diagnosis.ranking = ranking_of(set, comparison, noise_alone);
   // Beside sizes of each clip's own little is left of any effect, and not where it lies.
   const std::vector<std::size_t>& leading = comparison.all.front().effects;

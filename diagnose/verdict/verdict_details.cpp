@@ -90,9 +90,11 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
 
 namespace {
 
-constexpr double kLeastNegativeSds = 5.0;  // standard deviations below 0 at which a drag or friction counts as negative
-constexpr double kLeastPullSds = 5.0;      // standard deviations between a statement and everything else
-constexpr double kLeastPartToTell = 0.2;   // of the motion: from here on the reader must be told that it is set aside
+// Standard deviations below 0 at which a drag or friction counts as negative: of the nominal model, as in an analysis,
+// and beside named causes, whose sizes may be off by their shapes.
+constexpr double kLeastNegativeSds = 3.0, kLeastNegativeBesideSds = 5.0;
+constexpr double kLeastPullSds = 5.0;     // standard deviations between a statement and everything else
+constexpr double kLeastPartToTell = 0.2;  // of the motion: from here on the reader must be told that it is set aside
 
 std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
   std::vector<ContradictedIncline> found;
@@ -123,11 +125,12 @@ std::optional<SetAside> set_aside(const TrackSet& set) {
 
 namespace {
 
-std::vector<NegativeLoss> negative_of(const Eigen::VectorXd& values, const Eigen::VectorXd& variances) {
+std::vector<NegativeLoss> negative_of(const Eigen::VectorXd& values, const Eigen::VectorXd& variances, bool named) {
+  const double sds = named ? kLeastNegativeBesideSds : kLeastNegativeSds;
   std::vector<NegativeLoss> found;
   for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
     const double sd = std::sqrt(std::max(0.0, variances[g]));
-    if (!(values[g] < -kLeastNegativeSds * sd)) continue;
+    if (!(values[g] < -sds * sd)) continue;
     found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, values[g], sd});
   }
   return found;
@@ -136,13 +139,14 @@ std::vector<NegativeLoss> negative_of(const Eigen::VectorXd& values, const Eigen
 }  // namespace
 
 std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
-  return negative_of(fit.at.global, common_covariance(fit).diagonal());
+  return negative_of(fit.at.global, common_covariance(fit).diagonal(), !fit.effects.empty());
 }
 
 void count_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes, Diagnosis& diagnosis) {
   const RemainderSpace::Solution solution = RemainderSpace(set, fit).solve(sizes);
-  diagnosis.limits.driving = negative_of(fit.at.global + solution.change,
-                                         solution.covariance.diagonal().cwiseMax(solution.between_clips.diagonal()));
+  diagnosis.limits.driving =
+      negative_of(fit.at.global + solution.change,
+                  solution.covariance.diagonal().cwiseMax(solution.between_clips.diagonal()), !fit.effects.empty());
   std::erase_if(diagnosis.notes, [](const Note& note) { return std::holds_alternative<NegativeLoss>(note); });
   for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
 }

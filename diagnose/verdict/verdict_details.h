@@ -36,7 +36,8 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
                                                    const ImageEvidence& images,
                                                    const std::vector<DiagnosedParameter>& known);
 
-/// Drag and friction that a fit has below zero by more than five standard deviations.
+/// Drag and friction that a fit has below zero, by more than three standard deviations if it is the nominal one, and by
+/// more than five beside effects.
 std::vector<NegativeLoss> what_drives(const MotionFit& fit);
 
 /// What makes an explanation impossible: such a drag or friction beside its effects, or a size of theirs at an end of
@@ -50,7 +51,7 @@ void count_remainder(const TrackSet& set, const MotionFit& fit, const RemainderS
 /// Limits that a reader must know before the verdict, for the fit on which it rests: a negative drag or friction,
 /// statements that the data contradict, and the part of the data that is set aside.
 ///
-/// Drag and friction take energy from a glider. A nominal fit in which K or mu is negative by more than five standard
+/// Drag and friction take energy from a glider. A nominal fit in which K or mu is negative by more than three standard
 /// deviations explains nothing, however well it follows the positions: the verdict is then not "nothing is missing",
 /// and the probability of that goes to the unknown.
 VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit);

@@ -8,12 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "base/math/log_sum.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
 #include "diagnose/causes/cause_weighing.h"
 #include "diagnose/causes/gap_levels.h"
-#include "diagnose/causes/recovered.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/causes/scatter_structure.h"
 #include "diagnose/effects/effect_library.h"
@@ -21,13 +19,14 @@
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/next_experiment.h"
+#include "diagnose/recovered/recovered.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/unnamed/unnamed_trifle.h"
 #include "diagnose/verdict/likely_explanations.h"
 #include "diagnose/verdict/named_explanation.h"
 #include "diagnose/verdict/order_of_causes.h"
 #include "diagnose/verdict/probabilities_by_share.h"
-#include "diagnose/verdict/unnamed_trifle.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
 #include "diagnose/verdict/verdict_notes.h"
@@ -171,7 +170,7 @@ class VerdictWithCauses {
   bool settle_probabilities();
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
-  void trust_stated();
+  void name_by_stated();
   void doubt_by_share(bool in_images);
   void move_imperfections_to_none();
   Reported reported_by(const Diagnosis& diagnosis) const;
@@ -342,8 +341,10 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   if (below_noise) {
     move_to_none([](const Hypothesis&) { return true; }, first_);
     first_.none += std::exchange(first_.unknown, 0.0);
-    trust_stated();
   }
+  // Small imperfections that make no gap still show, and then count as an unknown cause.
+  const bool open = !sequence_.is_gap && !in_images && verdict_by(first_.none, first_.unknown) == Verdict::unknown;
+  if ((below_noise || open) && trust_stated(first_)) name_by_stated();
   doubt_by_share(in_images);
   const bool by_name = first_.unknown < kUnknownIfLess;
   const bool at_floor = sequence_.gap_before < 1.0 + sequence_.standard_error;
@@ -363,28 +364,8 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   return diagnosis;
 }
 
-/// Where nothing is claimed of the positions, a contradiction of stated inclinations is still none of their noise: the
-/// single effects that resolve it share what an unknown cause, the wrong statement among them, leaves.
-void VerdictWithCauses::trust_stated() {
-  constexpr double kWrongStatement = 0.1;
-  std::vector<double> logs;
-  std::vector<Hypothesis*> resolving;
-  for (Hypothesis& one : first_.all) {
-    if (one.unnamed || one.effects.size() != 1 || one.fit <= 0) continue;
-    if (gain_in_stated(nominal(), first_.fits[static_cast<std::size_t>(one.fit)]) < kClearInStated) continue;
-    resolving.push_back(&one);
-    logs.push_back(one.log_evidence + log_prior_odds(first_, one));
-  }
-  if (resolving.empty()) return;
-  const double all = base::log_sum(logs);
-  for (std::size_t k = 0; k < resolving.size(); ++k) {
-    resolving[k]->probability = (1.0 - kWrongStatement) * std::exp(logs[k] - all);
-    first_.effect_probability[resolving[k]->effects.front()] += resolving[k]->probability;
-  }
-  first_.none = 0.0;
-  first_.unknown = kWrongStatement;
-  std::stable_sort(first_.all.begin(), first_.all.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+/// The likeliest of the names that resolve a contradiction of stated inclinations (trust_stated()) is the verdict's.
+void VerdictWithCauses::name_by_stated() {
   const Hypothesis* named = best_named(set_, first_);  // in the comparison whose fits are reported
   const Hypothesis* reported = named == nullptr ? nullptr : find(by(), {named->effects.begin(), named->effects.end()});
   if (reported == nullptr || reported->fit <= 0) return;

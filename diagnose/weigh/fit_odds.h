@@ -18,9 +18,9 @@ double log_odds_of_sizes(const MotionFit& fit);
 /// stiffness no position tells how stiff it is.
 std::vector<std::size_t> effects_at_end(const MotionFit& fit);
 
-/// Sets Comparison::fit_odds: those of the sizes, a thousandth for each effect at an end of its range, and,
-/// in a fall through air, those of the drag (air_odds.h). The inertia of air that moves along has a third of the odds
-/// of the drag alone that it belongs to.
+/// Sets Comparison::fit_odds: those of the sizes, a thousandth for each effect at an end of its range, and, in a fall
+/// through air, those of the drag (air_odds.h). The inertia of air that moves along has a third of the odds of the drag
+/// alone that it belongs to.
 void set_fit_odds(const TrackSet& set, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

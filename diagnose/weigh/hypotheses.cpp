@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/integrated_start.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/fit_odds.h"
@@ -172,6 +173,13 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
     EffectScan scan = comparison.scans[air];
     if (scan.values.empty()) scan.values = {effect_list()[air].parameters.front().step};
     add(comparison, fit_more(set, nominal, scan, nothing));
+  }
+  if (is_misfit(set, nominal)) {
+    // The neighbourhood of a fit that follows no bounce does not show what causes it.
+    for (const EffectScan& scan : comparison.scans) {
+      if (!scan.visible || scan.values.empty() || !has_integrated_start(scan.effect)) continue;
+      if (find(comparison, {scan.effect}) == nullptr) add(comparison, fit_more(set, nominal, scan, nothing));
+    }
   }
   for (const EffectScan& scan : comparison.scans) {
     const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {

@@ -131,12 +131,12 @@ bool is_scatter(std::size_t effect);
 bool is_scatter_alone(const Hypothesis& hypothesis);
 
 /// The hypothesis that a verdict would name, or null: the likeliest of those that contain the likeliest cause, and what
-/// acts beside it in more than half of them. A cause
-/// may be by far the likeliest and have its probability shared among many second ones. A pair that contains none of the
-/// likely causes is then no answer, even if no other pair is as likely (the median probability model of Barbieri and
-/// Berger, Annals of Statistics 32, 870, 2004). Causes that no experiment with tracks (first_alike()), or not this one
-/// (`alike`), can tell apart count together, so that several names for one cause are not beaten by a less likely cause
-/// with a single name. Scatter of single positions is a cause only by itself.
+/// acts beside it in more than half of them. A cause may be by far the likeliest and have its probability shared among
+/// many second ones. A pair that contains none of the likely causes is then no answer, even if no other pair is as
+/// likely (the median probability model of Barbieri and Berger, Annals of Statistics 32, 870, 2004). Causes that no
+/// experiment with tracks (first_alike()), or not this one (`alike`), can tell apart count together, so that several
+/// names for one cause are not beaten by a less likely cause with a single name. Scatter of single positions is a cause
+/// only by itself.
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 inline constexpr double kLikelierThanNot = 0.5;  ///< the probability from which a cause is rather there than not

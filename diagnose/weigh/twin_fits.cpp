@@ -42,8 +42,8 @@ std::optional<Eigen::Index> phase_of(const ParameterLayout& layout, std::size_t 
   return {};
 }
 
-/// The start for `to` in place of `from` in a fit. Empty if a bumper is at the other end, or if the size is
-/// beyond its range.
+/// The start for `to` in place of `from` in a fit. Empty if a bumper is at the other end, or if the size is beyond its
+/// range.
 std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std::size_t from, std::size_t to,
                                  const ParameterLayout& layout) {
   FitPoint start = with_some_effects(layout, fit);

@@ -183,6 +183,18 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
   return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
 }
 
+/// What is known of friction and slope where a single direction does not tell them apart: their sum.
+std::string intercept_words(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
+  std::string words;
+  for (const core::LineFit& line : c.lines) {
+    words += fmt::format("{}: acceleration at v = 0: {} m/s² (g sin α {} µ g cos α, from v {} 0)\n",
+                         base::printable_text(configuration_name(results, c)),
+                         base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd), line.direction > 0 ? "−" : "+",
+                         line.direction > 0 ? ">" : "<");
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string analysis_text(const core::AnalysisResults& results) {
@@ -194,6 +206,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
   for (const core::ConfigurationResult& c : results.configurations) {
     rows.push_back({configuration_name(results, c), quantity_text(c.k_over_m_1_s), quantity_text(c.mu),
                     quantity_text(c.alpha_deg), quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
+    if (!c.mu.estimate || !c.alpha_deg.estimate) reasons += intercept_words(results, c);
     for (const std::string& words : undetermined_words(c)) {
       reasons +=
           fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)), base::printable_text(words));

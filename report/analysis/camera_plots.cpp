@@ -75,7 +75,7 @@ Plot noise_plot(const diagnose::ImageCurve& curve) {
       fmt::format(
           "set xrange [0:*]\nset yrange [0:*]\nset xlabel 'brightness of a static pixel  (codes)'\nset ylabel "
           "'variance of its noise  (codes²)'\nplot $noise using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{0}' "
-          "title 'seen', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'shot noise, linear sensor'\n",
+          "title 'measured', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'shot noise, linear sensor'\n",
           kColors[0]);
   return {Drawing{script, std::vector{data}},
           fmt::format("Frame-to-frame variance of static pixels against their brightness. Shot noise gives a straight "

@@ -19,13 +19,14 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kOffLine = 2.0;                         // times the noise: more than a wrong noise estimate explains
-constexpr double kAboveGravity = 1.05, kAboveSds = 3.0;  // a twentieth: lengths and local gravity are known that well
+constexpr double kAboveGravity = 0.05, kAboveSds = 2.5;  // of g, one sd: lengths are known that well
 
 /// Downhill friction brakes: without drag no slope gives more than g, and a line that begins above it is too steep.
 /// gravity_m_s2 is 0 if it is not stated.
 bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
   if (line.direction < 0 || !(gravity_m_s2 > 0.0)) return false;
-  return line.a0_m_s2.value - kAboveSds * line.a0_m_s2.sd > kAboveGravity * gravity_m_s2;
+  const double sd_m_s2 = std::hypot(line.a0_m_s2.sd, kAboveGravity * gravity_m_s2);
+  return line.a0_m_s2.value - gravity_m_s2 > kAboveSds * sd_m_s2;
 }
 
 /// Of the clips of the configuration whose positions come from a file.

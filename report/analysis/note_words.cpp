@@ -112,9 +112,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::OtherAxisUnused& of) const {
     return fmt::format(
-        "\"{}\" is not used: this column was requested alone. The path of the two makes an angle of {:.1f}° with it "
-        "and "
-        "leaves a straight line by {:.2g} m, so distances along the motion are longer",
+        "\"{}\" is not used: this column was requested alone. Together the two give a path at {:.1f}° to this axis "
+        "that "
+        "departs from a straight line by {:.2g} m, so distances along the motion are longer",
         of.column, of.off_deg, of.off_m);
   }
   std::string operator()(const core::PathBends& of) const {
@@ -169,7 +169,7 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::MayBeAFall& of) const {
     return fmt::format(
-        "{} positions are taken for those in a hand; in them the body accelerates at {:.2g} m/s², as in a fall. If it "
+        "A hand seems to hold the body in {} positions, yet it accelerates at {:.2g} m/s² there, as in a fall. If it "
         "falls, state an inclination of 90° (--incline 90)",
         of.positions, of.a_m_s2);
   }

@@ -76,7 +76,7 @@ std::string images(const core::ClipResult& clip, const core::Preview& preview) {
     text += fmt::format(
         "<figure><img alt=\"frame {0} of clip {1}\" src=\"{2}\"><figcaption>Frame {0}, t = {3:.3f} s</figcaption>"
         "</figure>\n",
-        frame.frame, escape(clip.name), data_uri("image/jpeg", frame.jpeg), frame.t_s);
+        frame.frame + 1, escape(clip.name), data_uri("image/jpeg", frame.jpeg), frame.t_s);
   }
   if (!text.empty()) text = fmt::format("<div class=\"figures\">\n{}</div>\n", text);
   if (preview.no_video) {

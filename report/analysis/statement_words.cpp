@@ -33,8 +33,7 @@ std::string contradiction_causes(const core::InclineContradiction& of) {
   if (core::seems_uphill(of)) return "x seems to be positive uphill, and has to rise downhill";
   if (of.gross || !of.stated.sd_deg) return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
   return "an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length also makes "
-         "the "
-         "terminal velocity wrong, a wrong rate K/m too";
+         "the terminal velocity wrong, a wrong rate K/m too";
 }
 
 std::string slow_fall_words(const core::SlowFall& fall) {
@@ -50,9 +49,8 @@ std::string slow_fall_words(const core::SlowFall& fall) {
                                : "the times may be those of a slow-motion playback" + times(std::sqrt(ratio)) + ", ";
   return fmt::format(
       "the line of this fall begins with {} m/s² at v = 0, far below gravity. The body may have reached its final "
-      "speed "
-      "before it was seen, a hand may have held it, a liquid may carry most of its weight, {}or x may be in a larger "
-      "unit than stated{}",
+      "speed before it was seen, a hand may have held it, a liquid may carry most of its weight, {}or x may be in a "
+      "larger unit than stated{}",
       base::value_and_sd_text(a0.value, a0.sd), slow, times(ratio));
 }
 

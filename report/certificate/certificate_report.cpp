@@ -89,7 +89,9 @@ std::string bias_words(const Certificate& certificate) {
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
   const auto& [value, sd] = quantity.bias_sds;
-  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, sd) : fmt::format("{:.2f}", value);
+  constexpr double kFinest = 0.01;  // of a stated standard deviation: finer digits say nothing
+  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, std::max(sd, kFinest))
+                                       : fmt::format("{:.2f}", value);
 }
 
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
@@ -190,8 +192,8 @@ std::string all_lacks(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
   for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
-  return fmt::format("The twins leave out {}, unlike the recording. The answer holds only if this does not matter.",
-                     lacks);
+  return fmt::format(
+      "The recording has something that its twins lack: {}. The answer holds only if this does not matter.", lacks);
 }
 
 /// "the terminal velocity", "µ": within a sentence.
@@ -378,7 +380,7 @@ std::string certificate_text(const Certificate& certificate) {
   std::vector<std::vector<std::string>> rows = {kHeader};
   for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
   text += text_table(rows, 1);
-  std::vector<std::vector<std::string>> changes = {{"how much smaller its error is with"}};
+  std::vector<std::vector<std::string>> changes = {{"how much smaller the error becomes with"}};
   for (const CertifiedQuantity& quantity : certificate.quantities)
     changes.front().push_back(symbol_of(quantity.quantity));
   for (const ChangedTwin& change : certificate.changes) {

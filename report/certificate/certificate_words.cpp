@@ -69,7 +69,7 @@ LimitWords limit_words(const validate::ChangedTwin& changed) {
     case TwinLimit::rounding:
       return {"rounding", "positions with all their digits", "Export more digits"};
     case TwinLimit::cause:
-      return {"a cause that the law lacks", "the viscous and the Coulomb friction alone", cause_advice(changed.causes)};
+      return {"a cause that the law lacks", "viscous and Coulomb friction alone", cause_advice(changed.causes)};
     case TwinLimit::clip_scatter:
       return {"what differs from clip to clip", "one law for every clip",
               "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};

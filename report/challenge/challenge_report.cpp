@@ -99,10 +99,11 @@ std::string answer_of(const ChallengeScore& score) {
     } else if (winners.size() == 1) {
       sentences.push_back(fmt::format("Best in {}: {}.", in, winners.front()));
     } else {
-      sentences.push_back(
-          fmt::format("In {} {} cases do not tell {} apart{}.", in, score.challenge.cases, list_of(winners),
-                      winners.size() < score.entrants.size() ? fmt::format(", the best of {}", score.entrants.size())
-                                                             : std::string()));
+      sentences.push_back(fmt::format("{} cases do not tell {}{} apart in {}.", score.challenge.cases, list_of(winners),
+                                      winners.size() < score.entrants.size()
+                                          ? fmt::format(", the best of {},", score.entrants.size())
+                                          : std::string(),
+                                      in));
     }
   }
   return fmt::format("{}", fmt::join(sentences, " "));
@@ -132,9 +133,8 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
                                       std::max(duel.wins, duel.losses), duel.wins + duel.losses, duel.p));
     }
     if (apart == 0 && answering > 1) {
-      sentences.push_back(fmt::format("{}: {} cases do not tell any two of the {} entrants{} apart.",
-                                      symbol_of(of.quantity), score.challenge.cases, answering,
-                                      silent.empty() ? "" : " that answer"));
+      sentences.push_back(fmt::format("{}: {} cases tell none of the {} entrants{} apart.", symbol_of(of.quantity),
+                                      score.challenge.cases, answering, silent.empty() ? "" : " that answer"));
     }
   }
   return sentences;

@@ -338,7 +338,7 @@ const std::vector<ClipColumn> kClipColumns = {
      [](const core::ClipCheck& clip) {
        return clip.images ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string(kNothing);
      },
-     "pixels at the ends of the range"},
+     "pixels at the largest code and at the smallest"},
     {"noise (mm)",
      [](const core::ClipCheck& clip) {
        return clip.position_noise_m ? base::digits_text(1e3 * *clip.position_noise_m, 2) : std::string(kNothing);
@@ -377,7 +377,7 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
       shown += fmt::format(
           "<figure><img alt=\"frame {0} of clip {1}\" src=\"{2}\"><figcaption>{1}, frame {0}: the marker as it was "
           "found, and its path</figcaption></figure>\n",
-          frame.frame, escape(check.clips[i].name), data_uri("image/jpeg", frame.jpeg));
+          frame.frame + 1, escape(check.clips[i].name), data_uri("image/jpeg", frame.jpeg));
     }
   }
   if (!shown.empty()) text += fmt::format("<div class=\"figures\">\n{}</div>\n", shown);

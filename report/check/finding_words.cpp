@@ -355,6 +355,11 @@ struct FindingSentence {
     return {fmt::format("x covers {:.3g} m", of.distance_m),
             "check the unit of x: it may be centimetres, millimetres, or an angle"};
   }
+  FindingWords operator()(const found::Pushed& of) const {
+    return {fmt::format("until {:.3g} s it speeds up by up to {:.2g} m/s², more than any incline gives: it is pushed",
+                        of.until_s, of.acceleration_m_s2),
+            fmt::format("use the part that is free: start_s = {:.3g}, or leave out the rows before", of.until_s)};
+  }
   FindingWords operator()(const found::SlowFrames& of) const {
     return {fmt::format("its positions are {:.3g} s apart", of.apart_s),
             "check the unit of the times: they may be milliseconds, or frame numbers"};
@@ -366,6 +371,16 @@ struct FindingSentence {
     return {fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(of.share),
                         of.longest_s),
             "record at an even rate, and track every frame: no acceleration is measured across a gap"};
+  }
+  FindingWords operator()(const found::Interrupted& of) const {
+    const std::string more = of.count == 1   ? ""
+                             : of.count == 2 ? ", and once more later"
+                                             : fmt::format(", and {} times more later", of.count - 1);
+    return {
+        fmt::format("from {:.3g} s to {:.3g} s it does not move as before and after{}: a blow, a stop, a hand, or a "
+                    "force that acts only there",
+                    of.from_s, of.to_s, more),
+        "let it run freely, or make each free run a clip of its own, with start_s and end_s"};
   }
   FindingWords operator()(const found::Smoothed& of) const {
     return {

@@ -101,9 +101,9 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
   const char* const held_out = diagnosis.lines ? "lines" : "clips";
   return {{Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
            fmt::format(
-               "How much of the gap of held-out {0} each cause explains, added one after the other, and what is left. "
-               "The excess is the squared gap minus 1, its value for noise alone; bars with whiskers have their "
-               "95 % interval over {0}",
+               "How much of the gap of held-out {0} each cause explains, one added after the other, and what is left. "
+               "The excess is the squared gap minus 1, its value for noise alone; whiskers are "
+               "95 % intervals over {0}",
                held_out),
            "Waterfall of the gap: before, each cause, what is left"}};
 }

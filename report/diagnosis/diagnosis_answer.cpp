@@ -81,7 +81,7 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
   words += region_table(regions) + paragraph(levels_words(diagnosis));
   if (words.empty()) return {};
   const char* const heading = any_left              ? "Where the rest lies"
-                              : diagnosis.remainder ? "How far the law holds"
+                              : diagnosis.remainder ? "Where the nominal model holds"
                                                     : "Where the gap lies";
   return fmt::format("<h2>{}</h2>\n", heading) + words + figures(likeliest_curve(diagnosis, regions));
 }

@@ -251,7 +251,7 @@ std::string axis_of(diagnose::GapVariable variable) {
     case diagnose::GapVariable::column:
       return "image column u (px)";
     case diagnose::GapVariable::speed:
-      return "speed v (m/s)";
+      return "velocity v (m/s)";
     case diagnose::GapVariable::row:
       return "image row v (px)";
     case diagnose::GapVariable::position:

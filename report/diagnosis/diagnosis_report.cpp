@@ -219,7 +219,7 @@ Html gap_parts(const diagnose::Diagnosis& diagnosis) {
     html += folded("How large the gap is: positions, accelerations, parameters",
                    figures(domains) + figures(phase_gap_plots(diagnosis)));
   }
-  html += folded("Where the gap lies: residuals against position, speed and time",
+  html += folded("Where the gap of the nominal model lies: residuals against position, speed and time",
                  figures(where_plots(diagnosis)) + figures(residual_maps(diagnosis)) + region_table(diagnosis.regions));
   return html;
 }

@@ -65,8 +65,8 @@ Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
   }
   script += "\n";
   return {Drawing{script, std::vector{data}},
-          "Acceleration of the glider minus that of the model at the same speed, both smoothed alike: the mean over "
-          "intervals of speed, with the band in which noise alone would leave it 95 times in 100. A curve outside its "
+          "Acceleration of the glider minus that of the model at the same velocity, both smoothed alike: the mean over "
+          "intervals of velocity, with the band that holds noise alone 95 times in 100. A curve outside its "
           "band is a force that the model lacks",
           "Measured minus modelled acceleration against speed"};
 }
@@ -272,7 +272,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
                std::vector{never_empty(rest), never_empty(noise)}},
        "Measured positions of all clips minus those of the twin: where nothing is missing, as large as noise alone",
        "Measured positions minus those of the twin over time, with noise for comparison"},
-      {Drawing{std::string(kFrame) + "set xlabel 'speed v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
+      {Drawing{std::string(kFrame) + "set xlabel 'velocity v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
                    points("data", "twin"),
                std::vector{never_empty(data), never_empty(twin)}},
        "Acceleration against speed, of the data and of the twin, smoothed alike",

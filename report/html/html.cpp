@@ -182,10 +182,11 @@ details.part[open] { padding-bottom: 0.8rem; }
 @media (max-width: 600px) {
   th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } .tile b { font-size: 1.05rem; } main { padding: 0.8rem 0.8rem 2rem; }
   th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
+  figure:has(img[src^="data:image/svg"]) { overflow-x: auto; } figure img[src^="data:image/svg"] { min-width: 460px; }
 }
 @media screen and (max-width: 600px) {  /* a row becomes a block: its name, and each number under the title of its column */
   table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }
-  table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 0.6rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
+  table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 1.2rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
   table.stack td { border: 0; padding: 0; text-align: left; } table.stack td:not([data-title]) { grid-column: 1 / -1; font-weight: 600; white-space: normal; }
   table.stack td.n, table.stack td.s { white-space: normal; } table.stack td.t { grid-column: 1 / -1; min-width: 0; }
   table.stack td[data-title]::before { content: attr(data-title); display: block; color: var(--soft); font-size: 0.82rem; white-space: normal; }

@@ -124,8 +124,9 @@ std::string requirement_answer(const Requirement& requirement) {
       return candidate.verdict == Verdict::undecided;
     });
     if (undecided > 0) {
-      text += fmt::format(" {} cheaper {} may be good enough too: more runs would decide.", undecided,
-                          undecided == 1 ? "one" : "ones");
+      text +=
+          fmt::format(" {} cheaper {} may be good enough too; more runs would decide.",
+                      undecided == 1 ? "One" : std::to_string(undecided), undecided == 1 ? "candidate" : "candidates");
     }
     if (!first->price_class.empty()) text += " Prices are rough, and exclude the computer.";
     return text;

@@ -128,7 +128,7 @@ std::string ranges_text(const std::vector<int>& numbers) {
 
 Plot requirement_plot(const Requirement& requirement) {
   const Target& target = requirement.targets.front();
-  PlotData met{"met", {}}, missed{"missed", {}}, front{"front", {}};
+  PlotData met{"met", {}}, open{"open", {}}, missed{"missed", {}}, front{"front", {}};
   double best = std::numeric_limits<double>::infinity();
   double number = 0.0;
   std::vector<std::vector<double>> all;
@@ -140,7 +140,8 @@ Plot requirement_plot(const Requirement& requirement) {
     // On a logarithmic axis one standard deviation is drawn equally long upwards and downwards.
     const double times = std::exp(reach.sd / reach.value);
     all.push_back({cost, reach.value, number, reach.value / times, reach.value * times});
-    (reached(candidate) ? met : missed).rows.push_back(all.back());
+    const bool is_open = candidate.verdict == Verdict::unconfirmed || candidate.verdict == Verdict::undecided;
+    (reached(candidate) ? met : is_open ? open : missed).rows.push_back(all.back());
     if (reach.value < best) {
       if (!front.rows.empty()) front.rows.push_back({cost, best});
       front.rows.push_back({cost, reach.value});
@@ -177,6 +178,8 @@ Plot requirement_plot(const Requirement& requirement) {
   };
   add(front, fmt::format("1:2 with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
   add(met, fmt::format("1:2:4:5 with yerrorbars pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
+  add(open,
+      fmt::format("1:2:4:5 with yerrorbars pt 4 ps 0.8 lc rgb '{}' title 'not filmed, or too few runs'", kColors[0]));
   add(missed, fmt::format("1:2:4:5 with yerrorbars pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
   return {Drawing{script, data, {620, 420}},
           "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "

@@ -105,7 +105,7 @@ std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
     if (limit.gain < kLeastNamedGain) break;
-    text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limitation_words(limit.what), limit.gain,
+    text += fmt::format("{}{}: {:.{}f} times", text.empty() ? "" : "; ", limitation_words(limit.what), limit.gain,
                         limit.gain < 10.0 ? 1 : 0);
   }
   return text;
@@ -147,7 +147,7 @@ std::string counts_text(const Requirement& requirement) {
       fmt::format("{} of {} {} it{}", reaching, requirement.candidates.size(), reaching == 1 ? "reaches" : "reach",
                   requirement.confirm == validate::Confirm::clips ? " when filmed" : "");
   if (undecided > 0) text += fmt::format("; {} may (more runs would decide)", undecided);
-  if (possible > 0) text += fmt::format("; {} can by the bound, but nothing was run", possible);
+  if (possible > 0) text += fmt::format("; for {} the bound allows it, but nothing was run", possible);
   if (not_filmed > 0) {
     text += fmt::format("; {} more expensive {} it as tracks and {} not filmed", not_filmed,
                         not_filmed == 1 ? "one reaches" : "ones reach", not_filmed == 1 ? "was" : "were");

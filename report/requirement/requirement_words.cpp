@@ -56,23 +56,23 @@ std::string limitation_words(validate::Limitation limitation) {
   using validate::Limitation;
   switch (limitation) {
     case Limitation::frame_rate:
-      return fmt::format("frame rate ({:.0f} Hz instead, the same exposure)", validate::kFast_hz);
+      return fmt::format("frame rate ({:.0f} Hz, same exposure)", validate::kFast_hz);
     case Limitation::light:
       return "light (no shot noise)";
     case Limitation::camera_noise:
-      return "the camera's own noise (none)";
+      return "the camera's own noise (without it)";
     case Limitation::motion_blur:
-      return "motion blur (none)";
+      return "motion blur (without it)";
     case Limitation::resolution:
       return fmt::format("resolution ({:.0f} times finer)", validate::kFiner);
     case Limitation::clock:
-      return "the clock: lost frames, uneven frame times (none instead, by runs)";
+      return "clock (no lost frames, even frame times; by runs)";
     case Limitation::rolling_shutter:
-      return "rolling shutter (global instead, by runs)";
+      return "rolling shutter (global; by runs)";
     case Limitation::codec:
-      return "codec (lossless instead, by runs)";
+      return "codec (lossless; by runs)";
     case Limitation::calibration:
-      return "calibration (the true camera instead, by runs)";
+      return "calibration (the true camera; by runs)";
     case Limitation::imaging:
       return "lens, calibration and tracking (true positions with the expected noise, by runs)";
   }

@@ -153,7 +153,7 @@ bool is_open(const diagnose::DiagnosedParameter& parameter) {
 
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
   if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
-  if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, why_words(parameter.why));
+  if (parameter.why) return fmt::format("{} is not determined: {}", parameter.key, why_words(parameter.why));
   if (is_open(parameter)) {
     const std::string named = parameter_text(parameter.key, parameter.value, parameter.sd);
     return named.substr(0, named.find(" = ")) + " not determined";

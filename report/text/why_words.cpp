@@ -22,10 +22,10 @@ struct ReasonWords {
   std::string operator()(const unknown::NoLine&) const { return "no line: neither direction has enough usable points"; }
   std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
   std::string operator()(const unknown::SpeedHardlyChanges&) const {
-    return "the speed hardly changes in the positions that are used, so no slope is known";
+    return "the speed hardly changes in the positions that are used, so they determine no slope";
   }
   std::string operator()(const unknown::NotBothLines& of) const {
-    return fmt::format("no line for {}, and only both directions tell friction from slope{}",
+    return fmt::format("no line for {}: only motion in both directions separates friction from inclination{}",
                        of.minus && of.plus ? "v < 0 and none for v > 0"
                        : of.minus          ? "v < 0"
                                            : "v > 0",

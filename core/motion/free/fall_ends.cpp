@@ -106,7 +106,7 @@ std::size_t released_at(const Motion& motion, int direction, std::size_t to) {
   const double clearly_m = kClearlyOff * std::sqrt(2.0) * motion.noise_m;
   std::size_t off = 1;  // the first point that is clearly elsewhere
   while (off < to && std::abs(motion.x_m[off] - motion.x_m[0]) <= clearly_m) ++off;
-  if (off == to || direction * (motion.x_m[off] - motion.x_m[0]) < 0.0) return 0;  // rests, or is thrown up
+  if (off + 1 >= to || direction * (motion.x_m[off] - motion.x_m[0]) < 0.0) return 0;  // rests, or is thrown up
 
   const Fall fall(motion, direction, to);
   double before = std::numeric_limits<double>::infinity();

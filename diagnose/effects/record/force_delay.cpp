@@ -17,7 +17,7 @@ EffectInfo force_delay() {
       .of_camera = false,
       .words = "a force that acts later or earlier than recorded",
       .name = "delay of the force",
-      .meaning = "the force acts tau later than recorded",
+      .meaning = "the force acts τ later than recorded",
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,

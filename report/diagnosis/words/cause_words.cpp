@@ -320,7 +320,7 @@ std::string levels_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::GapLevels& levels = *diagnosis.levels;
   const char* const gap = is_measured_without_drag(diagnosis) ? " separately, a fall without drag has a gap of"
                                                               : " separately, the nominal model has a gap of";
-  std::string text = "Fitted to ";
+  std::string text = "With no clip held out: fitted to ";
   if (levels.clip) text += fmt::format("each clip{} {}; to ", gap, base::number_text(*levels.clip, 3));
   if (levels.configuration) {
     text += fmt::format("each configuration{} {}; to ", levels.clip ? "," : gap,

@@ -142,8 +142,8 @@ struct Sentence {
     return "There is only one clip: each piece of its motion is held out in turn.";
   }
   std::string operator()(const diagnose::QuartersHeldOut&) const {
-    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of that "
-           "clip or, where it has three motions or more, on each of these.";
+    return "There is only one clip: the gap is measured on held-out quarters of it "
+           "or, where it has three motions or more, on each of them.";
   }
   std::string operator()(const diagnose::LastingErrors& of) const {
     return fmt::format(
@@ -169,8 +169,8 @@ struct Sentence {
   }
   std::string operator()(const diagnose::SuspectedFall& of) const {
     return fmt::format(
-        "{} positions are taken for those in a hand; in them the body accelerates at {:.2g} m/s², as in a fall. If it "
-        "falls, state an inclination of 90° (--incline 90): nothing else here holds then.",
+        "A hand seems to hold the body in {} positions, yet it accelerates at {:.2g} m/s² there, as in a fall. If it "
+        "falls, state an inclination of 90° (--incline 90); the other results here do not hold in that case.",
         of.found.positions, of.found.a_m_s2);
   }
   std::string operator()(const diagnose::OfReading& of) const {
@@ -183,6 +183,12 @@ struct Sentence {
   std::string operator()(const diagnose::NoMassStated&) const {
     return "No mass is stated, and 1 kg is assumed. K/m, µ, α and terminal velocities do not depend on it; sizes in N, "
            "N/m, kg/m or kg are for each kilogram of the true mass.";
+  }
+  std::string operator()(const diagnose::ForceReversed& of) const {
+    return fmt::format(
+        "First check the sign of force_n: with the recorded force reversed, the nominal model leaves {} % of the chi² "
+        "that it leaves now. A force is positive in the direction in which the file's x grows.",
+        base::number_text(100.0 * of.part_of_chi2, 2));
   }
   std::string operator()(const diagnose::OnlyFalls&) const {
     return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
@@ -238,7 +244,8 @@ struct Sentence {
     std::vector<std::string> names;
     for (const diagnose::Explanation& one : of.of) names.push_back(explanation_name(one));
     return fmt::format(
-        "The fit{} of {} reached the limit on steps before a minimum; {} may account for more of the gap than stated.",
+        "The fit{} of {} stopped at the limit on steps, before a minimum; {} may account for more of the gap than "
+        "stated.",
         names.size() > 1 ? "s" : "", list_of(names), names.size() > 1 ? "these explanations" : "this explanation");
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {

@@ -30,7 +30,7 @@ struct ImageSentence {
   }
   std::string operator()(const image::LightAlong& of) const {
     std::string text =
-        fmt::format("The image of the marker changes its brightness by {} % per metre {}; {:.0f} % is usual in a room.",
+        fmt::format("The brightness of the marker changes by {} % per metre {}; {:.0f} % is usual in a room.",
                     base::value_and_sd_text(100.0 * of.gradient_1_m, 100.0 * of.sd_1_m),
                     of.down ? "down the image" : "to the right", 100.0 * of.usual_1_m);
     if (of.pull) {
@@ -82,7 +82,7 @@ struct ImageSentence {
     return text;
   }
   std::string operator()(const image::FrameTimes& of) const {
-    return fmt::format("{} frames repeat the image before, and the time stamps leave a gap for {}.", of.repeated,
+    return fmt::format("{} frames repeat the one before, and the time stamps leave room for {} more.", of.repeated,
                        of.missing);
   }
 };

@@ -87,7 +87,7 @@ std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id
 /// "either of two things (55 % together) that these lines cannot distinguish: A (…), or B (…)".
 std::string either(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
-  std::string text = lines.either_of.size() == 2 ? "either of two things" : "one of several things";
+  std::string text = lines.either_of.size() == 2 ? "one of two effects" : "one of several effects";
   text += fmt::format(" ({} together) that these lines cannot distinguish: ", percent(lines.either_probability));
   for (std::size_t i = 0; i < lines.either_of.size(); ++i) {
     const diagnose::LineCandidate& one = candidate(lines, only(lines.either_of[i]));
@@ -142,14 +142,13 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
                                                           : "this effect");
   if (gap.before < 1.0) {
     text +=
-        " On average no line is off by more than its scatter: it is the pattern of the deviations that speaks for a "
-        "cause.";
+        " On average no line is off by more than its scatter: the evidence for a cause is in the pattern of the "
+        "deviations.";
   }
   if (gap.after > 1.0 + diagnose::kClearGap * gap.standard_error) {
     text += fmt::format(
         " Even the best explanation leaves {} times the lines' own scatter: something else is missing as well, or "
-        "errors "
-        "within one set-up are correlated.",
+        "errors within one set-up are correlated.",
         line_times(gap.after));
   }
   return text;

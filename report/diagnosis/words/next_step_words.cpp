@@ -34,9 +34,9 @@ const char* kind_words(ChangeKind kind) {
     case ChangeKind::exposure:
       return "exposures";
     case ChangeKind::plumb:
-      return "a plumb view";
+      return "a view of a plumb line";
     case ChangeKind::pattern:
-      return "a pattern check";
+      return "a check of the pattern";
     case ChangeKind::clock:
       return "a stopwatch";
   }
@@ -230,12 +230,14 @@ struct Words {
     }
     if (!of.by) {
       return fmt::format(
-          "None of {} would decide {} (expected log likelihood at most {:.2g}): less noise (a longer lens, a larger "
+          "None of {} would decide {} (expected gain in log likelihood at most {:.2g}): less noise (a longer lens, a "
+          "larger "
           "marker) or many more clips would.",
           weighed_words(of.weighed), doubt_words(of.doubt), of.log_likelihood);
     }
-    return fmt::format("{}: of {}, this one best decides {} (expected log likelihood {}).", change_words(*of.by),
-                       weighed_words(of.weighed), doubt_words(of.doubt), likelihood_words(of.log_likelihood));
+    return fmt::format("{}: of {}, this one best decides {} (expected gain in log likelihood {}).",
+                       change_words(*of.by), weighed_words(of.weighed), doubt_words(of.doubt),
+                       likelihood_words(of.log_likelihood));
   }
 
   std::string operator()(const diagnose::SharpenParameter& of) const {

@@ -14,9 +14,8 @@ std::string first_to_check(const diagnose::DoubtfulUnit& of) {
   if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
     return fmt::format(
         "First find out why it falls so slowly ({}: {}). If it was at its final speed from the start, terminal "
-        "velocities "
-        "hold. If a liquid bears part of its weight, they hold as well, and drags are too large by the ratio of its "
-        "weight to that in the liquid. Otherwise nothing below holds.",
+        "velocities hold. If a liquid bears part of its weight, they hold as well, and drags are too large by the "
+        "ratio of its weight to that in the liquid. Otherwise nothing below holds.",
         of.clip, words.found);
   }
   const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
@@ -31,8 +30,7 @@ std::string bent_words(const diagnose::OfReading& of) {
   if (path == nullptr || path->slope_deg < kClearly_deg) return {};
   return fmt::format(
       "First find out whether the track is straight: in {}, the direction of the path in x and y changes by {:.1f}°. "
-      "On "
-      "a bent track gravity along the motion changes, and the causes named below may be an effect of that.",
+      "On a bent track gravity along the motion changes, and the causes named below may be an effect of that.",
       of.clip, path->slope_deg);
 }
 

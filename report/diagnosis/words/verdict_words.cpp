@@ -250,8 +250,8 @@ std::string consequence(const diagnose::Diagnosis& diagnosis) {
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
     const char* const below = diagnosis.recovered.empty() ? "" : " The table below includes it.";
     return std::string(
-               " An analysis of these data (glidelab analyze) leaves this out: its K/m, µ and inclination are those of "
-               "a law without it, and may be wrong by more than their stated errors.") +
+               " glidelab analyze leaves this out: its K/m, µ and inclination are those of "
+               "a law without it, and may be wrong by more than their ± says.") +
            below;
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {

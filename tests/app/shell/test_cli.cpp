@@ -37,7 +37,7 @@ TEST_CASE("help lists the commands that exist and no others") {
   const std::size_t first = result.out.find("\nA recording:\n");
   REQUIRE(first != std::string::npos);
   const std::string list = result.out.substr(first);
-  CHECK(list.find("\nA rehearsal:\n") < list.find("\nA class:\n"));
+  CHECK(list.find("\nPlanning and rehearsal:\n") < list.find("\nFor the classroom:\n"));
   CHECK(list.find("\nTests of the methods:\n") != std::string::npos);
   static const std::regex kCommand(R"(^  ([a-z-]+) )", std::regex::multiline);
   std::set<std::string> listed;

@@ -218,7 +218,8 @@ TEST_CASE("what is found is said once, and in the words of the folder that it is
 
 namespace {
 
-/// The findings about the launch or the masses of a folder with a track each for `motions`, all filmed for 1.7 s.
+/// The findings about the launch, the masses or an interruption of a folder with a track each for `motions`, all filmed
+/// for 1.7 s.
 std::vector<core::Finding> of_setups(const std::vector<core::ClipSetup>& setups,
                                      const std::vector<core::TrackData>& tracks,
                                      core::Downhill downhill = core::Downhill::plus_x) {
@@ -239,7 +240,8 @@ std::vector<core::Finding> of_setups(const std::vector<core::ClipSetup>& setups,
   std::vector<core::Finding> findings = core::check_recording(experiment, 1).findings;
   std::erase_if(findings, [](const core::Finding& finding) {
     return !std::holds_alternative<core::found::MassesApart>(finding.found) &&
-           !std::holds_alternative<core::found::AgainstStatedLaunch>(finding.found);
+           !std::holds_alternative<core::found::AgainstStatedLaunch>(finding.found) &&
+           !std::holds_alternative<core::found::Interrupted>(finding.found);
   });
   return findings;
 }
@@ -299,6 +301,31 @@ TEST_CASE("a hand that carries the glider up and rests there is no finding") {
     if (track.t_s[i] < 1.0) track.x_m[i] += 0.2 * (1.0 + std::cos(std::numbers::pi * track.t_s[i]));
   }
   CHECK(of_setups({tests::clip_setup(core::Launched::released, 4.3)}, {track}).empty());
+}
+
+TEST_CASE("a stop or a blow in mid-run is a finding with its time, a turn, a bounce or a stop at the end is none") {
+  using core::Launched;
+  const auto found = [](const tests::SimulatedMotion& motion) {
+    return of_setups({tests::clip_setup(Launched::down, 4.3)}, {tests::film(motion, {200.0, 3.0, 1e-4})});
+  };
+  const auto run = [] { return tests::SimulatedMotion().kick(0.2).slide(kSlope, 1.2); };
+  const auto held = found(run().kick(0.0).rest(0.3).slide(kSlope, 3.0));
+  REQUIRE(held.size() == 1);
+  CHECK(held[0].severity == core::Severity::change);
+  const auto& rest = found_as<core::found::Interrupted>(held[0]);
+  CHECK(rest.count == 1);
+  CHECK(std::abs(rest.from_s - 1.2) < 0.1);
+  CHECK(std::abs(rest.to_s - 1.5) < 0.1);
+  const double slower = run().v(1.2) - 0.25;
+  const auto hit = found(run().kick(slower).slide(kSlope, 3.0));
+  REQUIRE(hit.size() == 1);
+  CHECK(std::abs(found_as<core::found::Interrupted>(hit[0]).from_s - 1.2) < 0.1);
+  CHECK(found(run().slide(kSlope, 3.0)).empty());
+  const double stop_m = run().x(1.2);
+  CHECK(found(tests::SimulatedMotion().kick(0.2).slide(kSlope, 3.0, stop_m, 0.8)).empty());
+  CHECK(found(tests::SimulatedMotion().kick(0.2).slide(kSlope, 3.0, stop_m)).empty());
+  CHECK(of_setups({tests::clip_setup(Launched::up, 4.3)}, {tests::film(tests::launch(kSlope, -0.6, 3.0), {200.0, 3.0})})
+            .empty());
 }
 
 TEST_CASE("masses a hundred times apart are a finding that names the heavy clips, ninety times are none") {

@@ -110,6 +110,56 @@ TEST_CASE("positions seconds apart have their times in another unit") {
   CHECK(tests::found_as<core::found::SlowFrames>(found[0]).apart_s == Approx(10.0).epsilon(1e-9));  // 1000 times 10 ms
 }
 
+TEST_CASE("a push beyond any incline is told with its end, a launch before the first position and a fall are none") {
+  // 15 m/s² for 0.12 s, then 0.7 m/s² of friction: 1.8 m/s.
+  const auto pushed = [](double t) {
+    const double s = t - 0.12;
+    return t < 0.12 ? 7.5 * t * t : 0.108 + 1.8 * s - 0.35 * s * s;
+  };
+  const std::vector<core::Finding> found = findings(positions(pushed));
+  const auto* const push = tests::found_in<core::found::Pushed>(found);
+  REQUIRE(push != nullptr);
+  CHECK(push->acceleration_m_s2 == Approx(15.0).epsilon(0.2));
+  CHECK(push->until_s == Approx(0.12).margin(0.03));
+  CHECK(tests::found_in<core::found::Pushed>(findings(positions(pushed), 90.0)) == nullptr);
+  CHECK(findings(positions([](double t) { return 1.8 * t - 0.35 * t * t; })).empty());
+}
+
+TEST_CASE("frame numbers in place of times, a second apart, are told") {
+  Positions of = positions(run);
+  for (std::size_t i = 0; i < of.t_s.size(); ++i) of.t_s[i] = static_cast<double>(i);
+  CHECK(tests::found_in<core::found::SlowFrames>(findings(of)) != nullptr);
+  for (double& t : of.t_s) t *= 0.5;
+  CHECK(tests::found_in<core::found::SlowFrames>(findings(of)) == nullptr);
+}
+
+TEST_CASE("a count and an angle in equal steps are no positions, marks in equal steps are") {
+  const auto steps_of = [](double step) {
+    Positions of;
+    for (int i = 0; i < 20; ++i) {
+      of.t_s.push_back(std::sqrt(0.05 * i + 0.1));
+      of.x_m.push_back(step * i);
+    }
+    return findings(of, 90.0);
+  };
+  CHECK(only<core::found::Counted>(steps_of(1.0)));
+  CHECK(only<core::found::Counted>(steps_of(3.14159)));
+  CHECK(only<core::found::Counted>(steps_of(-6.2832)));
+  for (const double step : {0.05, 1.5, 0.1}) {
+    const std::vector<core::Finding> found = steps_of(step);
+    CHECK(std::none_of(found.begin(), found.end(),
+                       [](const core::Finding& one) { return tests::fault_as<core::found::Counted>(one) != nullptr; }));
+  }
+}
+
+TEST_CASE("a tracker that jumps to and fro shows no motion, and a body at rest is another matter") {
+  std::mt19937_64 random(3);
+  std::bernoulli_distribution other(0.5);
+  CHECK(only<core::found::LostInNoise>(findings(positions([&](double) { return other(random) ? 2.0 : 0.04; }))));
+  CHECK(findings(positions([](double) { return 0.3; }, 1e-3)).empty());
+  CHECK(findings(positions(run, 0.02)).empty());
+}
+
 TEST_CASE("a free fall on a stated slope of 4 degrees is none") {
   CHECK(only<core::found::FreeFall>(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; }))));
 }

@@ -67,6 +67,15 @@ TEST_CASE("a value to which the body would have to jump is not seen, at a start,
   CHECK(core::without_flagged(two.x, core::unseen_positions(two.t_s, two.x)->is_unseen).size() == 50);
 }
 
+TEST_CASE("zeros before a body comes into view near 0 are not seen if zeros far from it say so") {
+  // From 6 mm on at 0.3 m/s, 15 mm a step: no jump leads from the zeros at the start to it.
+  const Series run = series(60, [](double t) { return 0.3 * std::max(0.0, t - 0.2) + 0.006; });
+  const Series before = with(run, {0, 1, 2, 3, 4}, 0.0);
+  CHECK(unseen_in(before).empty());
+  CHECK(unseen_in(with(before, {40, 41}, 0.0)) == Places{0, 1, 2, 3, 4, 40, 41});
+  CHECK(unseen_in(with(run, {40, 41}, 0.0)).empty());  // nothing shows that 0 says so
+}
+
 TEST_CASE(
     "the zeros of a sensor that counts from its first sighting are those that it writes when it has lost a bead") {
   Series bead = series(80, [](double t) { return 0.075 * std::max(0.0, t - 0.5); });

@@ -64,6 +64,16 @@ TEST_CASE("text among the times or the positions is refused with its line") {
   CHECK_THROWS_WITH(read_text(text + "later,0.4,\n"), Contains("\"later\""));
 }
 
+TEST_CASE("a row above the others with both decimal signs is no header: it is refused with its line") {
+  std::string text = "t;x\n0.000;3,10E-02\n";
+  for (int i = 1; i < kRows; ++i) text += fmt::format("{},{:02}E-02;{},{:02}E-02\n", i, i, i + 3, i);
+  CHECK_THROWS_WITH(read_text(text),
+                    Contains(":2:") && Contains("\"0.000;3,10E-02\"") && Contains("a decimal comma throughout"));
+  const std::string rest = text.substr(text.find("1,01"));
+  CHECK(read_text("t;x\n0,000;3,10E-02\n" + rest).x_m.size() == kRows);
+  CHECK_THROWS_WITH(read_text("0.000;3,10E-02\n" + rest), Contains(":1:") && Contains("decimal point"));
+}
+
 TEST_CASE("lines of words with numbers in them are no table") {
   std::string text;
   for (int i = 0; i < 20; ++i) {

@@ -245,6 +245,37 @@ TEST_CASE("a wavy path is refused like an arc, a smaller bend is told, and a str
   CHECK(tests::note_of<core::PathBends>(read_text(plane([](double x) { return 0.5 * x; })).notes) == nullptr);
 }
 
+TEST_CASE("of two columns of which neither is called a time, the one that is not x is it") {
+  std::string text = "x;Posicao\n";
+  for (int i = 0; i < 20; ++i) text += fmt::format("{:.3f};{:.5f}\n", 0.05 * i, 0.3 - 0.002 * i * i);
+  CHECK_THROWS_WITH(read_text(text), Contains("name the one that is x (--column)"));
+  const core::TrackData track = read_text(text, "Posicao");
+  CHECK(track.t_s[8] == Approx(0.4));
+  CHECK(track.x_m[8] == Approx(0.3 - 0.128));
+  const auto* const taken = tests::note_of<core::ColumnsTaken>(track.notes);
+  REQUIRE(taken != nullptr);
+  CHECK_THROWS_WITH(read_text(text, "x"), Contains("time"));  // positions that go back are no times
+}
+
+TEST_CASE("a track of few positions tells how many rows have none") {
+  std::string text = "t,x\n";
+  for (int i = 0; i < 14; ++i)
+    text += i % 2 == 0 ? fmt::format("{:.2f},{:.3f}\n", 0.1 * i, 0.01 * i) : fmt::format("{:.2f},\n", 0.1 * i);
+  CHECK_THROWS_WITH(read_text(text), Contains("7 points, and 7 rows without a time or a position") &&
+                                         Contains("at least 8: record at a higher rate"));
+}
+
+TEST_CASE("three columns without a header that make a curved path are refused, and a column can be named") {
+  const auto without_header = [](const std::string& text) { return text.substr(text.find('\n') + 1); };
+  const std::string wavy = without_header(plane([](double x) { return 0.065 * std::sin(7.0 * x); }));
+  CHECK_THROWS_WITH(read_text(wavy), Contains("a curved path") && Contains("--column"));
+  CHECK(read_text(wavy, "2").x_m.back() == Approx(1.4));
+  CHECK(read_text(without_header(plane([](double) { return 0.3; }))).x_m.back() == Approx(1.4));
+  const core::TrackData bent =
+      read_text(without_header(plane([](double x) { return 0.012 * std::sin(2.0 * std::numbers::pi * x / 0.9); })));
+  CHECK(tests::note_of<core::PathBends>(bent.notes) != nullptr);
+}
+
 TEST_CASE("a requested x whose y is not level is read alone, and a note says so") {
   const auto note_of = [](const std::string& text, const char* column) {
     const core::TrackData track = read_text(text, column);

@@ -6,6 +6,7 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -33,6 +34,30 @@ TEST_CASE("a law that is lost among clips that scatter shows beside their scatte
   // What is left out is not looked for.
   for (const diagnose::MotionFit& other : diagnose::laws_beside_scatter(set, *clips, sizes, {bow})) {
     CHECK(other.effects.back() != bow);
+  }
+}
+
+TEST_CASE("of missing frames that were found in several ways those stay that are worth their price") {
+  tests::MadeEffect losses;
+  losses.lost = [](std::size_t clip, std::size_t frame) { return clip % 2 == 0 && (frame == 40 || frame == 90); };
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), losses, 3, 3e-5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  CHECK_FALSE(diagnose::lost_frames_alone(set, {nominal}, 1));
+  const diagnose::MotionFit found = diagnose::find_missing_frames(set, nominal).fit;
+  REQUIRE(diagnose::missing_in(set, found) == 8);  // four clips of eight
+  const auto with = [&](double step_s) {  // later by so much from the last but fortieth position of the first motion on
+    diagnose::Lateness late = found.late;
+    for (std::size_t p = late[0].size() - 40; p < late[0].size(); ++p) late[0][p] += step_s;
+    return diagnose::fit_motions(set, {}, found.at, late);
+  };
+  const diagnose::MotionFit one_more = with(0.01), one_less = with(-0.01);
+  for (const std::vector<diagnose::MotionFit>& order : std::vector<std::vector<diagnose::MotionFit>>{
+           {nominal, one_less, found, one_more}, {one_more, found, one_less}}) {
+    const auto best = diagnose::lost_frames_alone(set, order, 2);
+    REQUIRE(best);
+    CHECK(best->late == found.late);
+    CHECK(best->effects.empty());
   }
 }
 

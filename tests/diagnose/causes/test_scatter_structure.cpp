@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnose/causes/further_causes.h"
@@ -76,31 +77,31 @@ TEST_CASE("sizes with a part in common are likelier with it, and independent one
   CHECK(gained(mixed) < 0.0);
 }
 
-TEST_CASE("a drift of friction shows through clips that scatter about it") {
-  std::mt19937_64 random(5);
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    CAPTURE(seed);
-    std::vector<double> mu;
-    for (int c = 0; c < 9; ++c) mu.push_back(0.006 * (1.0 + 0.08 * c) + scattered(random, 0.00012));
-    const tests::MadeExperiment made = with_frictions(mu, false, seed);
-    CHECK(gain(made, diagnose::ids::friction_drift) > 5.0);
-    const std::vector<std::string> named = names(diagnosed(made));
-    REQUIRE_FALSE(named.empty());
-    CHECK(named.front() == "friction_drift");
-  }
-}
-
-TEST_CASE("a friction of each configuration shows through clips that scatter about it") {
-  std::mt19937_64 random(6);
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    CAPTURE(seed);
-    std::vector<double> mu;
-    for (int c = 0; c < 9; ++c) mu.push_back((c < 3 ? 0.0068 : c < 6 ? 0.0042 : 0.0080) + scattered(random, 0.00015));
-    const tests::MadeExperiment made = with_frictions(mu, true, seed);
-    CHECK(gain(made, diagnose::ids::configuration_friction) > 5.0);
-    const std::vector<std::string> named = names(diagnosed(made));
-    REQUIRE_FALSE(named.empty());
-    CHECK(named.front() == "configuration_friction");
+TEST_CASE("a drift of friction, or a friction of each configuration, shows through clips that scatter about it") {
+  struct Structure {
+    std::string_view effect;
+    bool three_masses = false;
+    double (*mu)(int clip) = nullptr;
+    double scatter = 0.0;
+  };
+  const std::vector<Structure> structures = {
+      {diagnose::ids::friction_drift, false, [](int c) { return 0.006 * (1.0 + 0.08 * c); }, 1.2e-4},
+      {diagnose::ids::configuration_friction, true, [](int c) { return c < 3   ? 0.0068
+                                                                       : c < 6 ? 0.0042
+                                                                               : 0.0080; },
+       1.5e-4}};
+  for (const Structure& structure : structures) {
+    std::mt19937_64 random(5);
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      CAPTURE(structure.effect, seed);
+      std::vector<double> mu;
+      for (int c = 0; c < 9; ++c) mu.push_back(structure.mu(c) + scattered(random, structure.scatter));
+      const tests::MadeExperiment made = with_frictions(mu, structure.three_masses, seed);
+      CHECK(gain(made, structure.effect) > 5.0);
+      const std::vector<std::string> named = names(diagnosed(made));
+      REQUIRE_FALSE(named.empty());
+      CHECK(named.front() == structure.effect);
+    }
   }
 }
 

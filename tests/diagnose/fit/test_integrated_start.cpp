@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
@@ -62,4 +63,40 @@ TEST_CASE("the nominal fit of a long run under another law is no worse than one 
   const diagnose::MotionFit from_truth = diagnose::fit_motions(set, {}, truth);
   INFO(nominal.cost << " and " << from_truth.cost);
   CHECK(nominal.cost <= 1.001 * from_truth.cost);
+}
+
+TEST_CASE("integrated positions show where a bumper begins and how stiff it is, however far the nominal fit is off") {
+  // Down an incline against a spring of 30 N/m at 0.9 m, and back: m w² = k with w of about 10/s, far from any fit
+  // without it.
+  constexpr double kStiff_n_m = 30.0, kPlace_m = 0.9;
+  const tests::MadeEffect bumper{
+      .force = [](double, double x, double, double) { return x > kPlace_m ? -kStiff_n_m * (x - kPlace_m) : 0.0; }};
+  const std::vector<tests::MadeLaunch> launches = {{0.3, 2.0, 0.2, 0.3}, {0.5, 2.0, 0.4, 0.2}, {0.3, 2.0, 0.8, -0.5}};
+  const tests::MadeExperiment made =
+      tests::made_experiment(launches, bumper, 12, 2e-4, 200, 60.0, 0.1, 0.0, {.k_n_s_m = 0.1, .mu = 0.004});
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  for (const auto& id : {diagnose::ids::end_stop, diagnose::ids::tether}) {
+    const std::size_t effect = diagnose::effect_index(id);
+    REQUIRE(diagnose::has_integrated_start(effect));
+    const auto start = diagnose::integrated_start(set, effect);
+    REQUIRE(start);
+    const Eigen::Index size = start->global.size() - 2;
+    CHECK(start->global[size] == Approx(kStiff_n_m).epsilon(0.05));
+    CHECK(start->global[size + 1] == Approx(kPlace_m).margin(2e-3));
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const diagnose::MotionFit fit =
+        diagnose::fit_with_effect(set, nominal, effect, diagnose::with_effect(set, nominal, effect, {1.0, 0.5}, {}));
+    CHECK_FALSE(diagnose::is_misfit(set, fit));
+    CHECK(fit.at.global[size] == Approx(kStiff_n_m).epsilon(0.01));
+  }
+  const std::size_t bow = diagnose::effect_index(diagnose::ids::track_bow);
+  CHECK_FALSE(diagnose::has_integrated_start(bow));
+  CHECK_FALSE(diagnose::integrated_start(set, bow));
+  // Without a bumper, what is found pushes by less than the noise of the positions shows.
+  const tests::MadeExperiment free =
+      tests::made_experiment(launches, {}, 12, 2e-4, 60, 60.0, 0.1, 0.0, {.k_n_s_m = 0.1, .mu = 0.004});
+  const diagnose::TrackSet none = diagnose::track_set(free.results, free.setups, true);
+  if (const auto start = diagnose::integrated_start(none, diagnose::effect_index(diagnose::ids::end_stop))) {
+    CHECK(start->global[0] == Approx(0.1).epsilon(0.1));
+  }
 }

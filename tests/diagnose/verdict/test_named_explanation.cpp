@@ -8,6 +8,7 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
+#include "diagnose/gap/size_uncertainty.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -96,6 +97,40 @@ TEST_CASE("where no equal has a certain size the others of an explanation stand 
   Named certain;
   certain.add({"quadratic_drag"}, true, 0.5);
   CHECK(certain.instead().empty());
+}
+
+TEST_CASE("several sizes of one kind are certain if they are together farther from 0 than by chance") {
+  Named named;
+  const auto fit_with = [&](std::string_view id) {
+    const std::size_t effect = diagnose::effect_index(id);
+    return diagnose::fit_with_effect(named.set, named.comparison.fits.front(), effect,
+                                     diagnose::with_effect(named.set, named.comparison.fits.front(), effect, {}, {}));
+  };
+  diagnose::MotionFit fit = fit_with(diagnose::ids::place_friction);
+  const std::size_t friction = diagnose::effect_index(diagnose::ids::place_friction);
+  const auto first = static_cast<Eigen::Index>(fit.layout->first_of(friction));
+  const Eigen::Index sizes = fit.at.global.size() - first;
+  REQUIRE(sizes > 3);
+  const diagnose::SizeUncertainty uncertainty(named.set, fit);
+  const auto certain_at = [&](double sds, Eigen::Index many) {
+    for (Eigen::Index g = 0; g < sizes; ++g) {
+      fit.at.global[first + g] = g < many ? sds * uncertainty.sd(first + g) : 0.0;
+    }
+    return diagnose::has_certain_size(named.set, fit, {friction});
+  };
+  // Sums of squares of n normal numbers: chi² of n degrees, whose 95 % quantile is 14.07 for seven and 12.59 for six.
+  const double n = static_cast<double>(sizes);
+  CHECK_FALSE(certain_at(0.0, sizes));
+  CHECK_FALSE(certain_at(1.2, sizes));       // 1.44 n
+  CHECK(certain_at(std::sqrt(2.4), sizes));  // above the quantile for any n from four on
+  CHECK_FALSE(certain_at(std::sqrt(n), 1));  // one of them, with the expectation of all
+  CHECK(certain_at(-std::sqrt(2.4 * n), 1));
+  const std::size_t scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
+  diagnose::MotionFit scattering = fit_with(diagnose::ids::clip_scatter);
+  scattering.at.global
+      .tail(scattering.at.global.size() - static_cast<Eigen::Index>(scattering.layout->first_of(scatter)))
+      .setZero();
+  CHECK(diagnose::has_certain_size(named.set, scattering, {scatter}));
 }
 
 TEST_CASE("an effect without a certain size is no cause only if the others leave no more of the gap") {

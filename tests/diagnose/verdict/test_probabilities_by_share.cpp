@@ -186,3 +186,38 @@ TEST_CASE("the probability that one of several acts counts each explanation once
   CHECK(std::abs(diagnose::probability_of_any(comparison, {kDrag, kPlace}) - 0.6) < 1e-12);
   CHECK(diagnose::probability_of_any(comparison, {}) == 0.0);
 }
+
+TEST_CASE("what resolves a contradicted inclination takes the place of causes that show and make no gap") {
+  const std::size_t scale = effect_index(ids::scale_error), clock = effect_index(ids::frame_rate_error);
+  const auto fit_at = [](double alpha_rad) {  // 0.1 ± 0.01 rad is stated
+    diagnose::MotionFit fit;
+    fit.at.global = Eigen::VectorXd::Constant(1, alpha_rad);
+    fit.statements = {{0, 0.1, 0.01, diagnose::Against::stated}};
+    return fit;
+  };
+  const auto made = [&](double alpha_rad) {
+    Comparison comparison = comparison_of({{{kDrag}, 0.1}, {{scale}, 0.02}, {{clock}, 0.01}}, 0.05);
+    comparison.fits = {fit_at(alpha_rad), fit_at(alpha_rad), fit_at(0.1), fit_at(0.1)};
+    for (std::size_t k = 0; k < 3; ++k) comparison.all[k].fit = static_cast<int>(k + 1);
+    comparison.all[1].log_evidence = 3.0 + std::log(2.0);
+    comparison.all[2].log_evidence = 3.0;
+    Hypothesis curve;
+    curve.unnamed = true;
+    curve.probability = comparison.unknown;
+    comparison.all.push_back(curve);
+    return comparison;
+  };
+  Comparison off = made(0.05);  // five standard deviations
+  REQUIRE(diagnose::trust_stated(off));
+  CHECK(off.none == 0.0);
+  CHECK(off.unknown == Approx(0.1));
+  CHECK(probability_of(off, {scale}) == Approx(0.6));
+  CHECK(probability_of(off, {clock}) == Approx(0.3));
+  CHECK(probability_of(off, {kDrag}) == 0.0);
+  CHECK(off.effect_probability[scale] == Approx(0.6));
+  CHECK(off.all.front().effects == std::vector{scale});
+  Comparison near = made(0.06);  // four
+  CHECK_FALSE(diagnose::trust_stated(near));
+  CHECK(probability_of(near, {kDrag}) == 0.1);
+  CHECK(near.none == 0.05);
+}

@@ -72,6 +72,8 @@ TEST_CASE("what images show joins every explanation with its own log evidence, a
     REQUIRE(without != nullptr);
     REQUIRE(with != nullptr);
     CHECK(with->log_evidence == without->log_evidence + 11.0);  // sums of whole numbers: exact
+    CHECK(without->of_images == 0.0);
+    CHECK(with->of_images == 11.0);
   }
   REQUIRE(of(comparison, {"quadratic_drag", "light_flicker"}, false) != nullptr);
   CHECK(of(comparison, {"quadratic_drag", "light_flicker"}, false)->log_evidence == 16.0);
@@ -104,6 +106,7 @@ TEST_CASE("an explanation that holds the effect already is raised or lowered by 
     images.findings = {finding("camera_motion", log_evidence)};
     diagnose::join_images({}, images, {}, comparison);
     CHECK(of(comparison, {"camera_motion"}, false)->log_evidence == 14.0 + log_evidence);
+    CHECK(of(comparison, {"camera_motion"}, false)->of_images == log_evidence);
     CHECK(std::count_if(comparison.all.begin(), comparison.all.end(), [](const auto& h) {
             return h.effects == std::vector<std::size_t>{diagnose::effect_index("camera_motion")} && !h.unnamed;
           }) == 1);

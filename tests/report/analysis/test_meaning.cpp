@@ -98,9 +98,10 @@ TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no
     results.configurations[0].lines[0].a0_m_s2 = core::estimate(a0_m_s2, sd_m_s2, 10.0);
     return report::doubts_about(results).empty();
   };
-  CHECK(quiet(9.83, 0.001, 1));  // local gravity, a length that is 0.3 % off
-  CHECK(quiet(12.0, 1.0, 1));    // within its uncertainty
-  CHECK(quiet(19.6, 0.5, -1));   // uphill friction adds to the slope
+  CHECK(quiet(9.83, 0.001, 1));        // local gravity, a length that is 0.3 % off
+  CHECK(quiet(12.0, 1.0, 1));          // within its uncertainty
+  CHECK_FALSE(quiet(12.28, 0.72, 1));  // 2.9 standard deviations, of the line and of lengths and gravity together
+  CHECK(quiet(19.6, 0.5, -1));         // uphill friction adds to the slope
 }
 
 TEST_CASE("a line above gravity with x in centimetres is said to be that, and one without a drag is no drag's") {
@@ -198,8 +199,8 @@ TEST_CASE("a reason for several missing quantities is told once") {
   results.configurations[0].mu.why = results.configurations[0].alpha_deg.why = one_way;
   results.configurations[0].v_lim_m_s.why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
   const std::string text = report::analysis_text(results);
-  CHECK(text.find("µ and α are not determined: no line for v < 0, and only both directions tell friction from slope") !=
-        std::string::npos);
+  CHECK(text.find("µ and α are not determined: no line for v < 0: only motion in both directions separates friction "
+                  "from inclination") != std::string::npos);
   CHECK(text.find("terminal velocity is not determined: no line for v > 0") != std::string::npos);
 }
 
@@ -362,4 +363,18 @@ TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {
   CHECK(report::diagnosis_meaning(diagnosis).find("corrects the times after them") != std::string::npos);
   diagnosis.effects.emplace_back().id = "quadratic_drag";
   CHECK(report::diagnosis_meaning(diagnosis).find("leaves this out") != std::string::npos);
+}
+
+TEST_CASE("where one direction tells friction and slope together, the acceleration at v = 0 is told") {
+  core::AnalysisResults results = one_clip();
+  core::LineFit line;
+  line.direction = 1;
+  line.a0_m_s2 = core::estimate(2.005, 0.011, 10.0);
+  results.configurations[0].lines = {line};
+  CHECK(report::analysis_text(results).find("acceleration at v = 0") == std::string::npos);  // both are determined
+  results.configurations[0].mu = {};
+  CHECK(report::analysis_text(results).find("acceleration at v = 0: 2.005 ± 0.011 m/s² (g sin α − µ g cos α, from v > "
+                                            "0)") != std::string::npos);
+  results.configurations[0].lines[0].direction = -1;
+  CHECK(report::analysis_text(results).find("(g sin α + µ g cos α, from v < 0)") != std::string::npos);
 }

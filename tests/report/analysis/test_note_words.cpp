@@ -77,7 +77,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %). State its value at your place"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::MayBeAFall{26, 5.61},
-       "26 positions are taken for those in a hand; in them the body accelerates at 5.6 m/s²"},
+       "A hand seems to hold the body in 26 positions, yet it accelerates at 5.6 m/s² there"},
       {core::OutlyingView{"view-2.png", 2.0, true},
        "view-2.png departs from the fitted camera by 2 px and is left out"},
       {core::OutlyingView{"view-2.png", 2.0, false}, "kept, because fewer"},

@@ -214,7 +214,7 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
       {TwinLimit::codec, "codec", "no compression loss",
        "Compress less: a higher bit rate or quality, or a lossless codec"},
       {TwinLimit::rounding, "rounding", "positions with all their digits", "Export more digits"},
-      {TwinLimit::cause, "a cause that the law lacks", "the viscous and the Coulomb friction alone",
+      {TwinLimit::cause, "a cause that the law lacks", "viscous and Coulomb friction alone",
        "Remove the cause from the experiment"},
       {TwinLimit::clip_scatter, "what differs from clip to clip", "one law for every clip",
        "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"},

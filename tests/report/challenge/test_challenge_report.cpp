@@ -45,9 +45,9 @@ TEST_CASE("a challenge's score begins with who is best in what") {
   CHECK(first_line(score_of({quantity_of("k_over_m_1_s", {2, 1, 3}, 8), quantity_of("mu", {3, 1, 2}, 8)})) ==
         "Best in K/m and µ: lines.");
   CHECK(first_line(score_of({quantity_of("k_over_m_1_s", {1, 1, 3}, 8), quantity_of("mu", {1, 2, 2}, 8)})) ==
-        "In K/m 8 cases do not tell mine and lines apart, the best of 3. Best in µ: mine.");
+        "8 cases do not tell mine and lines, the best of 3, apart in K/m. Best in µ: mine.");
   CHECK(first_line(score_of({quantity_of("mu", {1, 1, 1}, 8)})) ==
-        "In µ 8 cases do not tell mine, lines and spline apart.");
+        "8 cases do not tell mine, lines and spline apart in µ.");
   CHECK(first_line(score_of({quantity_of("alpha_deg", {1, 1, 1}, 0)})) == "No entrant determines α.");
 }
 
@@ -66,10 +66,10 @@ TEST_CASE("an entrant that never answers has no rank, even if too few cases tell
   score.quantities[0].duels = {{0, 1, 0, 6, 0, 0.1}};
   const std::string text = report::challenge_text(score);
   INFO(text);
-  CHECK(first_line(score) == "In µ 8 cases do not tell lines and spline apart, the best of 3.");
+  CHECK(first_line(score) == "8 cases do not tell lines and spline, the best of 3, apart in µ.");
   CHECK(text.find("no answer  mine") != std::string::npos);
   CHECK(report::challenge_json(score).find("\"rank\": null") != std::string::npos);
   CHECK(text.find("mine") > text.find("1          lines"));
   CHECK(text.find("µ: no answer from mine.") != std::string::npos);
-  CHECK(text.find("8 cases do not tell any two of the 2 entrants that answer apart.") != std::string::npos);
+  CHECK(text.find("8 cases tell none of the 2 entrants that answer apart.") != std::string::npos);
 }

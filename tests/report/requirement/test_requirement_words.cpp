@@ -30,15 +30,15 @@ TEST_CASE("every verdict on a camera has words, with what it rests on") {
 TEST_CASE("every limitation of a camera says what the camera would have instead, and whether runs have shown it") {
   using validate::Limitation;
   const std::vector<std::pair<Limitation, std::string>> all = {
-      {Limitation::frame_rate, "frame rate (1000 Hz instead, the same exposure)"},
+      {Limitation::frame_rate, "frame rate (1000 Hz, same exposure)"},
       {Limitation::light, "light (no shot noise)"},
-      {Limitation::camera_noise, "the camera's own noise (none)"},
-      {Limitation::motion_blur, "motion blur (none)"},
+      {Limitation::camera_noise, "the camera's own noise (without it)"},
+      {Limitation::motion_blur, "motion blur (without it)"},
       {Limitation::resolution, "resolution (4 times finer)"},
-      {Limitation::clock, "the clock: lost frames, uneven frame times (none instead, by runs)"},
-      {Limitation::rolling_shutter, "rolling shutter (global instead, by runs)"},
-      {Limitation::codec, "codec (lossless instead, by runs)"},
-      {Limitation::calibration, "calibration (the true camera instead, by runs)"},
+      {Limitation::clock, "clock (no lost frames, even frame times; by runs)"},
+      {Limitation::rolling_shutter, "rolling shutter (global; by runs)"},
+      {Limitation::codec, "codec (lossless; by runs)"},
+      {Limitation::calibration, "calibration (the true camera; by runs)"},
       {Limitation::imaging, "lens, calibration and tracking (true positions with the expected noise, by runs)"}};
   CHECK(all.size() == static_cast<std::size_t>(Limitation::imaging) + 1);
   for (const auto& [limitation, words] : all) CHECK(report::limitation_words(limitation) == words);

@@ -18,7 +18,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NoDownhillLine{}, "no line for v > 0"},
       {unknown::SpeedHardlyChanges{}, "the speed hardly changes"},
       {unknown::NotBothLines{true, false, true},
-       "only both directions tell friction from slope, unless the inclination"},
+       "only motion in both directions separates friction from inclination, unless the inclination"},
       {unknown::NotBothLines{true, false}, "no line for v < 0, and only both directions"},
       {unknown::NotBothLines{false, true}, "no line for v > 0, and only both directions"},
       {unknown::NotBothLines{true, true}, "no line for v < 0 and none for v > 0, and only both directions"},

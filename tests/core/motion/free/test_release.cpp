@@ -140,6 +140,30 @@ TEST_CASE("a hand that opens slowly has not let go at once") {
   }
 }
 
+TEST_CASE("a fall of few positions after its release is cut there, or not at all, and the search for it ends") {
+  std::size_t cut = 0, all = 0;
+  for (const std::size_t after : {8, 9, 10, 12, 16}) {
+    for (const double step_s : {1.0 / 30.0, 1.0 / 60.0}) {
+      for (unsigned seed = 1; seed <= 6; ++seed) {
+        CAPTURE(after, step_s, seed);
+        core::Motion motion = falling({step_s, 50.0, 2e-4, 2.5 * step_s}, seed);
+        REQUIRE(motion.t_s.size() >= 3 + after);
+        for (std::vector<double>* of : {&motion.t_s, &motion.x_m, &motion.y_m}) of->resize(3 + after);
+        motion.point.resize(3 + after);
+        const std::size_t from = core::released_at(motion, 1, motion.t_s.size());
+        CHECK((from == 0 || from == 3));
+        cut += from == 3 ? 1 : 0;
+        ++all;
+      }
+    }
+  }
+  CHECK(4 * cut > 3 * all);
+  // Nothing but the last position shows that it fell.
+  core::Motion last = falling({1.0 / 60.0, 2.0, 1e-4, 0.1}, 1);
+  for (std::size_t i = 0; i + 1 < last.x_m.size(); ++i) last.x_m[i] = 0.0;
+  CHECK(core::released_at(last, 1, last.t_s.size()) == 0);
+}
+
 TEST_CASE("a fall is fitted from its release on, without a margin") {
   const core::Motion motion = falling({1.0 / 60.0, 2.0, 2e-4, 2.5 / 60.0}, 1);
   core::ClipSetup setup;

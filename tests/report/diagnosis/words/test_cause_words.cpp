@@ -219,11 +219,13 @@ TEST_CASE("the gap at each level is one sentence, whichever levels there are") {
   CHECK(report::levels_words(of).empty());
   of.levels->configuration = 2.5;
   CHECK(report::levels_words(of) ==
-        "Fitted to each configuration separately, the nominal model has a gap of 2.5; to all clips, 5.3 (1 is the "
+        "With no clip held out: fitted to each configuration separately, the nominal model has a gap of 2.5; to all "
+        "clips, 5.3 (1 is the "
         "noise).");
   of.levels->clip = 1.1;
   CHECK(report::levels_words(of) ==
-        "Fitted to each clip separately, the nominal model has a gap of 1.1; to each configuration, 2.5; to all clips, "
+        "With no clip held out: fitted to each clip separately, the nominal model has a gap of 1.1; to each "
+        "configuration, 2.5; to all clips, "
         "5.3 (1 is the noise).");
 }
 

@@ -46,6 +46,9 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"},
+      {diagnose::ForceReversed{0.0123},
+       "First check the sign of force_n: with the recorded force reversed, the nominal "
+       "model leaves 1.2 % of the chi²"},
       {diagnose::SuspectedFall{{26, 5.61}}, "at 5.6 m/s²"},
       {diagnose::OfReading{"bead", core::PositionsUnseen{11, 0.0, 0.048}}, "bead: 11 positions that are all 0 m"},
       {diagnose::OneOrigin{}, "one origin"},

@@ -40,7 +40,7 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
       {image::Compression{{}, "", 3.0, 1.5},
        "The file's compression is not known; steps between pixels are 4 times as large at the edges of 8 × 8 blocks as "
        "elsewhere. Noise persists over frames (changes over two frames are 1.50 times those over one)."},
-      {image::FrameTimes{3, 2}, "3 frames repeat the image before, and the time stamps leave a gap for 2."},
+      {image::FrameTimes{3, 2}, "3 frames repeat the one before, and the time stamps leave room for 2 more."},
   };
   std::set<std::size_t> kinds;
   for (const auto& [what, says] : rows) {

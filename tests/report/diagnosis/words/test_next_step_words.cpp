@@ -75,9 +75,9 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
   const auto name = [](const char* id) { return report::explanation_name({{id}}); };
   CHECK(name("stribeck") != "stribeck");  // people read names, not ids
   CHECK(report::next_step_words(step).starts_with(
-      "None of the 62 changes considered (launches, a plumb view) would decide whether it is " + name("scale_error") +
-      " rather than " + name("direction_asymmetry") + " or " + name("frame_rate_error") + ", and whether “" +
-      name("stribeck") + "” acts (expected log likelihood at most 1.2)"));
+      "None of the 62 changes considered (launches, a view of a plumb line) would decide whether it is " +
+      name("scale_error") + " rather than " + name("direction_asymmetry") + " or " + name("frame_rate_error") +
+      ", and whether “" + name("stribeck") + "” acts (expected gain in log likelihood at most 1.2)"));
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", step.doubt.back()}) ==
         "It is uncertain whether “" + name("stribeck") + "” acts. Film it again.");
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", {}}) == "Film it again.");

@@ -187,8 +187,8 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.gap->after = 4.0;
   of.gap->standard_error = 0.3;
   const std::string words = report::verdict_words(of);
-  CHECK(words.starts_with(
-      "These 12 lines show either of two things (74 % together) that these lines cannot distinguish"));
+  CHECK(
+      words.starts_with("These 12 lines show one of two effects (74 % together) that these lines cannot distinguish"));
   CHECK(contains(words, "24.0 ± 1.0 mN"));
   CHECK(contains(words, "Even the best explanation leaves 4.0 times"));
   CHECK_FALSE(contains(words, "pattern of the deviations"));

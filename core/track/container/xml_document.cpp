@@ -1,4 +1,4 @@
-#include "core/track/xml_document.h"
+#include "core/track/container/xml_document.h"
 
 #include <fmt/format.h>
 

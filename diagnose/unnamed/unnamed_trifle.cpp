@@ -1,9 +1,10 @@
-#include "diagnose/verdict/unnamed_trifle.h"
+#include "diagnose/unnamed/unnamed_trifle.h"
 
 #include <cmath>
 #include <cstddef>
 
 #include "diagnose/gap/held_out.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -1,4 +1,4 @@
-#include "diagnose/verdict/unnamed_trifle.h"
+#include "diagnose/unnamed/unnamed_trifle.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "diagnose/causes/scale_place.h"
+#include "diagnose/recovered/scale_place.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/track/zip_archive.h"
+#include "core/track/container/zip_archive.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "diagnose/causes/recovered.h"
+#include "diagnose/recovered/recovered.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnose/causes/recovered.h"
+#include "diagnose/recovered/recovered.h"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -14,9 +14,9 @@
 #include "base/math/distributions.h"
 #include "core/experiment/clip_setup.h"
 #include "core/result/estimate.h"
-#include "diagnose/causes/scale_place.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/recovered/scale_place.h"
 #include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
