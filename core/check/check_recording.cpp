@@ -201,6 +201,7 @@ int direction_of(std::span<const MotionPoint> points, std::size_t at) {
 
 /// Between two stretches of free motion that have the same direction. Where it turns, it bounced, or stood still.
 std::vector<Interruption> interruptions_of(std::span<const MotionPoint> points) {
+  constexpr double kBack = 0.2;  // of the speed before: at rest it is noise
   std::vector<Interruption> found;
   std::optional<std::size_t> free;  // the last point that is used
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -210,7 +211,12 @@ std::vector<Interruption> interruptions_of(std::span<const MotionPoint> points) 
       return point.left_out == LeftOut::stop || point.left_out == LeftOut::hand || point.left_out == LeftOut::rest;
     };
     const auto first = std::find_if(between.begin(), between.end(), handled);
-    if (first != between.end() && direction_of(points, *free) * direction_of(points, i) > 0) {
+    bool turns = false;
+    for (std::size_t k = free ? *free : i; k < i; ++k) {
+      turns = turns ||
+              (points[k].smoothed && points[k].v_m_s * points[*free].v_m_s < -kBack * std::pow(points[*free].v_m_s, 2));
+    }
+    if (first != between.end() && !turns && direction_of(points, *free) * direction_of(points, i) > 0) {
       const auto last = std::find_if(between.rbegin(), between.rend(), handled);
       found.push_back({first->t_s, last->t_s});
     }

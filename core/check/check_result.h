@@ -42,6 +42,7 @@ struct PatternCheck {
 
 /// From the positions alone (motion_look.h).
 struct MotionLook {
+  std::size_t positions = 0;
   double distance_m = 0.0;
   double noise_m = 0.0;                     ///< of a position, from its neighbours
   std::optional<double> counted;            ///< the step, if x goes on by the same from row to row, as no body does

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace glidelab::core {
 
 Found::Found(const Found&) = default;
@@ -49,10 +51,10 @@ struct FaultSentence {
             "the law of motion holds along a straight line: film a straight track, not a free flight or a swing"};
   }
   FaultWords operator()(const Counted& of) const {
-    return of.step == 1.0
-               ? FaultWords{"x goes up by exactly 1 from row to row: it counts something, and is no position",
+    return std::abs(of.step) == 1.0
+               ? FaultWords{"x changes by exactly 1 from row to row: it counts something, and is no position",
                             "say which column holds the positions (--column)"}
-               : FaultWords{fmt::format("x changes by {:.6g} from row to row, a part of a turn: it is an "
+               : FaultWords{fmt::format("x changes by {:.6g} from row to row, a multiple of a quarter turn: it is an "
                                         "angle, and no position",
                                         of.step),
                             "give positions along a straight line"};

@@ -363,7 +363,7 @@ struct CurvedPath {
   double bend = 0.0;  ///< sagitta over length
 };
 
-/// x goes on by the same step from row to row: by 1, or by a part of a turn.
+/// x changes by the same step from row to row: by 1, or by a multiple of a quarter turn.
 struct Counted {
   double step = 1.0;
 };

@@ -43,7 +43,8 @@ constexpr double kGapSteps = 3.0;                           // median steps: a l
 constexpr double kMostUnseen = 0.2;                         // of the time
 constexpr double kLongestPush_m = 1.0;                      // at 2 g it would give 6 m/s
 constexpr double kOffStretch = 0.05;                        // of the distance that a stretch covers
-constexpr double kLostInNoise = 0.25;                       // of the distance: positions at rest span more than that
+constexpr double kLostInNoise = 0.25;                       // of the distance: positions at rest span more than that,
+constexpr std::size_t kFewestToRest = 40;                   // if they are so many
 constexpr double kSureSds = 3.0;                            // of the acceleration of a stretch
 constexpr double kKeepsSpeed = 0.75;                        // of the speed at its end
 
@@ -58,7 +59,7 @@ std::optional<double> counted_step(std::span<const double> x_m) {
   const double quarters = std::abs(step) / (0.5 * std::numbers::pi);
   const bool turns = std::round(quarters) >= 1.0 && quarters < kMostQuarters + 0.5 &&
                      std::abs(quarters - std::round(quarters)) < kSame * quarters;
-  return step == 1.0 || turns ? std::optional(step) : std::nullopt;
+  return std::abs(step) == 1.0 || turns ? std::optional(step) : std::nullopt;
 }
 
 /// Standard deviation of a by n even points over a time T: its variance is 720 s²/(n T⁴).
@@ -134,6 +135,9 @@ void look_for_push(std::span<const double> t_s, std::span<const double> x_m, dou
     const Parabola parabola = parabola_through(t, x);
     const double span = t.back() - t.front(), at_end = parabola.v + 0.5 * parabola.a * span;
     const double sure = std::abs(parabola.a) - kSureSds * sd_of_a(noise_m, kFew, span);
+    const double moved_m = x_m[from] - x_m[0];
+    // It has moved the other way before: this is a bounce.
+    if (pushes == 0 && moved_m * parabola.a < 0.0 && std::abs(moved_m) > kTurnOverNoise * noise_m) break;
     const bool pushed = sure > kAboveGravity * kStandardGravity_m_s2 && at_end * parabola.a > 0.0;
     if (!pushed && pushes > 0) break;
     if (!pushed) continue;
@@ -217,6 +221,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   look.bend = bend_of(sightings);
   look_for_gaps(t_s, look);
   look.counted = counted_step(x_m);
+  look.positions = x_m.size();
   const double noise_m = pilot_noise(t_s, x_m);
   look.noise_m = noise_m;
   look.smooth = noise_m < kSmoothPart * look.distance_m;
@@ -313,7 +318,7 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   const double most = (falls ? kFarAboveGravity : kAboveGravity) * gravity_m_s2;
   if (look.counted) {
     book.add(Severity::unusable, found::Counted{*look.counted});
-  } else if (look.noise_m > kLostInNoise * look.distance_m) {
+  } else if (look.positions >= kFewestToRest && look.noise_m > kLostInNoise * look.distance_m) {
     book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
   } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
@@ -336,7 +341,7 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
     book.add(Severity::change, found::Gaps{look.unseen, look.longest_gap_s});
   }
   if (look.bend > kMostBend) book.add(Severity::unusable, found::CurvedPath{look.bend});
-  if (look.smooth) book.add(Severity::change, found::Smoothed{kSmoothPart});
+  if (look.smooth && !look.counted) book.add(Severity::change, found::Smoothed{kSmoothPart});
   return findings;
 }
 
@@ -352,8 +357,9 @@ void note_no_runs(AnalysisResults& results) {
       setup.incline_assumed = configuration.incline_assumed;
       for (const Finding& finding : motion_findings(look_at_motion(clip), setup, results.gravity_m_s2)) {
         const auto* const fault = std::get_if<found::MotionFault>(&finding.found);
-        if (fault == nullptr || !(std::holds_alternative<found::Oscillation>(*fault) ||
-                                  std::holds_alternative<found::CurvedPath>(*fault))) {
+        if (fault == nullptr ||
+            !(std::holds_alternative<found::Oscillation>(*fault) || std::holds_alternative<found::CurvedPath>(*fault) ||
+              std::holds_alternative<found::Counted>(*fault) || std::holds_alternative<found::LostInNoise>(*fault))) {
           continue;
         }
         found::FaultWords words = found::fault_words(*fault);

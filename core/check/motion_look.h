@@ -8,7 +8,10 @@
 /// makes it exceed g by far. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a over six turns
 /// or more, or 95 % of it over two to five, of eight parabolas or more. Bend: the sagitta of the marker's path in the
 /// image over its length, by a parabola. Smooth: the scatter about neighbouring positions is below 1e-7 of the
-/// distance, which no camera or sensor reaches.
+/// distance, which no camera or sensor reaches. Lost in noise: that scatter is above a quarter of the distance, of 40
+/// positions or more. Counted: x changes by exactly 1, or by a multiple of a quarter turn, from each row to the next.
+/// Pushed: at first it speeds up by more than gravity, in parabolas through five points each, and has not moved the
+/// other way before.
 #pragma once
 
 #include <optional>
@@ -21,7 +24,8 @@
 
 namespace glidelab::core {
 
-/// Nothing with fewer than 12 positions. Of a clip whose force was recorded only `smooth` and `bend` are looked at.
+/// Nothing with fewer than 12 positions. Of a clip whose force was recorded, accelerations say nothing and are
+/// not looked at.
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced);
 

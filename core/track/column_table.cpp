@@ -274,20 +274,17 @@ base::Issue thousands_or_decimals(const ColumnTable& table, std::size_t column, 
                   name)};
 }
 
-/// Numbers of which some have a decimal point and others a decimal comma: a row of data above the first that is read,
-/// and no header.
-bool is_row_of_other_sign(const Fields& row) {
-  const auto numbers = [&](char decimal) {
-    return std::ranges::count_if(row, [&](std::string_view field) { return number_in(field, decimal).has_value(); });
-  };
+/// Numbers, some of which have another decimal sign than those below: a row of data above the first that is read, and
+/// no header.
+bool is_row_of_other_sign(const Fields& row, const Format& format) {
   const bool all =
       std::ranges::all_of(row, [](std::string_view field) { return number_in(field, '.') || number_in(field, ','); });
-  return all && numbers('.') < std::ssize(row) && numbers(',') < std::ssize(row);
+  return all && std::ranges::any_of(row, [&](std::string_view field) { return !is_number(field, format); });
 }
 
 base::Issue other_sign(const std::string& file, const Line& line, const Format& format) {
-  return {file, line.number, "", fmt::format("\"{}\", with a decimal point and a decimal comma", line.text),
-          fmt::format("a decimal {} throughout, as below", format.decimal == ',' ? "comma" : "point")};
+  return {file, line.number, "", fmt::format("\"{}\", with another decimal sign than the rows below", line.text),
+          fmt::format("a decimal {} throughout", format.decimal == ',' ? "comma" : "point")};
 }
 
 /// A delimiter at the end of each line makes a column without a name and without values.
@@ -409,7 +406,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {
     if (rows[r].size() < 2) continue;  // a title
-    if (is_row_of_other_sign(rows[r])) issues.push_back(other_sign(table.file, lines[r], *format));
+    if (is_row_of_other_sign(rows[r], *format)) issues.push_back(other_sign(table.file, lines[r], *format));
     const bool as_wide = rows[r].size() == width || rows[r].size() == rows[first_data].size();
     if (format->delimiter == kBlanks && !as_wide) continue;  // words of a title
     header.emplace_back(rows[r].begin(), rows[r].end());

@@ -173,7 +173,6 @@ std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vect
   const PlanePath path = path_of(second, third);
   if (path.x_m.size() < kFewestOfPath || range_of(path.y_m) > kOtherAxis * range_of(path.x_m)) return {};
   refuse_curve(table, 1, 2, path);
-  judge_bend(table, 1, 2, path, notes);
   // Only if the third follows the second is it a place in the same plane.
   const auto n = static_cast<Eigen::Index>(path.x_m.size());
   Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
@@ -182,7 +181,9 @@ std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vect
   y -= y.mean();
   constexpr double kFollows = 0.99;  // squared correlation
   const bool follows = std::pow((x * y).sum(), 2) > kFollows * x.square().sum() * y.square().sum();
-  return follows ? along_path(table, 1, 2, notes) : chosen;
+  if (follows) return along_path(table, 1, 2, notes);
+  judge_bend(table, 1, 2, path, notes);
+  return chosen;
 }
 
 std::vector<std::size_t> columns_that(const ColumnTable& table, bool (*is)(const TableColumn&)) {
@@ -318,7 +319,10 @@ std::size_t time_column(const ColumnTable& table, std::size_t place, bool named)
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);
   if (times.size() == 1) return times.front();
-  if (named && times.empty() && table.columns.size() == 2 && increases(table.columns[1 - place])) return 1 - place;
+  if (named && times.empty() && table.columns.size() == 2 && increases(table.columns[1 - place]) &&
+      !is_frame_column(table.columns[1 - place])) {
+    return 1 - place;
+  }
   const auto frames = std::find_if(table.columns.begin(), table.columns.end(), is_frame_column);
   if (times.empty() && frames != table.columns.end()) {
     throw wrong_column(

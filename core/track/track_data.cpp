@@ -278,11 +278,12 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   if (track.t_s.size() < kFewestTrackPoints) {
-    const std::size_t empty = table.line.size() - track.t_s.size();
+    const std::size_t empty = x.run.empty() ? table.line.size() - track.t_s.size() : 0;  // other runs have others
+    const std::string rows = empty == 1 ? "1 row" : fmt::format("{} rows", empty);
     throw base::InputError(
         base::Issue{table.file, 0, fmt::format("column \"{}\"", x.text),
                     fmt::format("{} points{}", track.t_s.size(),
-                                empty == 0 ? "" : fmt::format(", and {} rows without a time or a position", empty)),
+                                empty == 0 ? "" : fmt::format(", and {} without a time or a position", rows)),
                     few_points_expectation()});
   }
   const double step_s = median_step(track.t_s);

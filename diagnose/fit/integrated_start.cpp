@@ -6,7 +6,6 @@
 #include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "base/math/dense.h"
@@ -253,8 +252,8 @@ std::optional<FitPoint> integrated_start(const TrackSet& set, std::size_t effect
   if (!(least < 0.0)) return {};
   constexpr int kBits = 12;
   const double apart_m = places[1] - places[0];
-  const auto [place_m, value] =
-      boost::math::tools::brent_find_minima(value_at, best_m - apart_m, best_m + apart_m, kBits);
+  const auto [place_m, value] = boost::math::tools::brent_find_minima(value_at, std::max(range.low, best_m - apart_m),
+                                                                      std::min(range.high, best_m + apart_m), kBits);
   if (value < least) best_m = place_m;
   const Solved solved = solve(set, PlacedForce{effect, best_m});
   FitPoint start = point_of(set, solved);

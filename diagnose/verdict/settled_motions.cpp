@@ -224,30 +224,37 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 
 namespace {
 
-/// Whether `trimmed` has a position of this clip at this time.
-bool has_position(const TrackSet& trimmed, std::size_t clip, double t_s) {
+/// Whether this time of a clip lies within one of the motions of `trimmed`. Driven motions are cut into pieces, which
+/// `trimmed` numbers otherwise.
+bool is_within(const TrackSet& trimmed, std::size_t clip, double t_s) {
   return std::any_of(trimmed.motions.begin(), trimmed.motions.end(), [&](const TrackedMotion& motion) {
-    return motion.clip == clip && std::binary_search(motion.t_s.begin(), motion.t_s.end(), t_s);
+    return (trimmed.pieces || motion.clip == clip) && motion.t_s.front() <= t_s && t_s <= motion.t_s.back();
   });
+}
+
+/// Whether an effect is a law that acts throughout, and neither lost frames nor something that is met in one place.
+bool acts_throughout(std::size_t effect) {
+  return shows_in_motion(effect_list()[effect].search) && effect_list()[effect].search != Search::lines &&
+         !follows_each_clip(effect) && effect != effect_index(ids::end_stop) && effect != effect_index(ids::tether);
 }
 
 /// Whether a law explains the positions that `trimmed` lacks: of what the nominal model leaves of them, in chi², beyond
 /// their noise, a fit with the law leaves at most a tenth.
 bool explains_by_law(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
-  constexpr double kMostLeft = 0.1;
-  const auto is_law = [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search) && !follows_each_clip(e); };
-  if (!std::any_of(fit.effects.begin(), fit.effects.end(), is_law)) return false;
-  double before = 0.0, after = 0.0;
+  constexpr double kMostLeft = 0.1, kClearSds = 5.0;
+  if (!std::any_of(fit.effects.begin(), fit.effects.end(), acts_throughout)) return false;
+  double before = 0.0, after = 0.0, count = 0.0;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];
     for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
-      if (motion.outlier[p] != 0 || has_position(trimmed, motion.clip, motion.t_s[p])) continue;
+      if (motion.outlier[p] != 0 || is_within(trimmed, motion.clip, motion.t_s[p])) continue;
       const auto at = static_cast<Eigen::Index>(p);
       before += std::pow(nominal.motions[i].residual[at], 2) - 1.0;
       after += std::pow(fit.motions[i].residual[at], 2) - 1.0;
+      count += 1.0;
     }
   }
-  return before > 0.0 && after < kMostLeft * before;
+  return before > kClearSds * std::sqrt(2.0 * count) && after < kMostLeft * before;
 }
 
 }  // namespace

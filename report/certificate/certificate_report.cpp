@@ -89,9 +89,7 @@ std::string bias_words(const Certificate& certificate) {
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
   const auto& [value, sd] = quantity.bias_sds;
-  constexpr double kFinest = 0.01;  // of a stated standard deviation: finer digits say nothing
-  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, std::max(sd, kFinest))
-                                       : fmt::format("{:.2f}", value);
+  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, sd) : fmt::format("{:.2f}", value);
 }
 
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
@@ -192,8 +190,8 @@ std::string all_lacks(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
   for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
-  return fmt::format(
-      "The recording has something that its twins lack: {}. The answer holds only if this does not matter.", lacks);
+  return fmt::format("The recording has what its twins lack: {}. The answer holds only if this does not matter.",
+                     lacks);
 }
 
 /// "the terminal velocity", "µ": within a sentence.

@@ -78,8 +78,8 @@ std::vector<std::vector<std::string>> rows_of(const ChallengeScore& score) {
   return rows;
 }
 
-/// The entrants with the first rank, with quantities grouped by winners: "Best in K/m and α: a. In µ 8 cases do not
-/// tell a and b apart, the best of 3."
+/// The entrants with the first rank, with quantities grouped by winners: "Best in K/m and α: a. 8 cases do not tell
+/// a and b, the best of 3, apart in µ."
 std::string answer_of(const ChallengeScore& score) {
   std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> by_winners;  // winners, quantities
   for (const ChallengeQuantity& of : score.quantities) {

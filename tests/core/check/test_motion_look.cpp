@@ -123,6 +123,12 @@ TEST_CASE("a push beyond any incline is told with its end, a launch before the f
   CHECK(push->until_s == Approx(0.12).margin(0.03));
   CHECK(tests::found_in<core::found::Pushed>(findings(positions(pushed), 90.0)) == nullptr);
   CHECK(findings(positions([](double t) { return 1.8 * t - 0.35 * t * t; })).empty());
+  // Against a bumper at 0.6 m/s, and back within 0.05 s: 24 m/s².
+  const auto bounced = [](double t) {
+    const double s = t - 0.5;
+    return s < 0.0 ? 0.6 * s : s < 0.05 ? 0.6 * s - 12.0 * s * s : -0.6 * (s - 0.05);
+  };
+  CHECK(tests::found_in<core::found::Pushed>(findings(positions(bounced))) == nullptr);
 }
 
 TEST_CASE("frame numbers in place of times, a second apart, are told") {
@@ -144,7 +150,8 @@ TEST_CASE("a count and an angle in equal steps are no positions, marks in equal 
   };
   CHECK(only<core::found::Counted>(steps_of(1.0)));
   CHECK(only<core::found::Counted>(steps_of(3.14159)));
-  CHECK(only<core::found::Counted>(steps_of(-6.2832)));
+  CHECK(only<core::found::Counted>(steps_of(-6.28319)));
+  CHECK(only<core::found::Counted>(steps_of(-1.0)));
   for (const double step : {0.05, 1.5, 0.1}) {
     const std::vector<core::Finding> found = steps_of(step);
     CHECK(std::none_of(found.begin(), found.end(),
@@ -158,6 +165,10 @@ TEST_CASE("a tracker that jumps to and fro shows no motion, and a body at rest i
   CHECK(only<core::found::LostInNoise>(findings(positions([&](double) { return other(random) ? 2.0 : 0.04; }))));
   CHECK(findings(positions([](double) { return 0.3; }, 1e-3)).empty());
   CHECK(findings(positions(run, 0.02)).empty());
+  Positions few = positions([](double) { return 0.3; }, 1e-3);
+  few.t_s.resize(12);
+  few.x_m.resize(12);
+  CHECK(findings(few).empty());
 }
 
 TEST_CASE("a free fall on a stated slope of 4 degrees is none") {

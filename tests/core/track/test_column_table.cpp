@@ -71,7 +71,8 @@ TEST_CASE("a row above the others with both decimal signs is no header: it is re
                     Contains(":2:") && Contains("\"0.000;3,10E-02\"") && Contains("a decimal comma throughout"));
   const std::string rest = text.substr(text.find("1,01"));
   CHECK(read_text("t;x\n0,000;3,10E-02\n" + rest).x_m.size() == kRows);
-  CHECK_THROWS_WITH(read_text("0.000;3,10E-02\n" + rest), Contains(":1:") && Contains("decimal point"));
+  CHECK_THROWS_WITH(read_text("0.000;3,10E-02\n" + rest), Contains(":1:") && Contains("another decimal sign"));
+  CHECK_THROWS_WITH(read_text("t;x\n0.000;0.031\n" + rest), Contains(":2:") && Contains("a decimal comma throughout"));
 }
 
 TEST_CASE("lines of words with numbers in them are no table") {

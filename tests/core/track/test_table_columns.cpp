@@ -255,6 +255,7 @@ TEST_CASE("of two columns of which neither is called a time, the one that is not
   const auto* const taken = tests::note_of<core::ColumnsTaken>(track.notes);
   REQUIRE(taken != nullptr);
   CHECK_THROWS_WITH(read_text(text, "x"), Contains("time"));  // positions that go back are no times
+  CHECK_THROWS_WITH(read_text("frame" + text.substr(1), "Posicao"), Contains("only frame numbers"));
 }
 
 TEST_CASE("a track of few positions tells how many rows have none") {

@@ -92,11 +92,15 @@ TEST_CASE("integrated positions show where a bumper begins and how stiff it is, 
   const std::size_t bow = diagnose::effect_index(diagnose::ids::track_bow);
   CHECK_FALSE(diagnose::has_integrated_start(bow));
   CHECK_FALSE(diagnose::integrated_start(set, bow));
-  // Without a bumper, what is found pushes by less than the noise of the positions shows.
+  // Without a bumper, no place is better by more than the positions' errors allow: K and the fit are those without one.
   const tests::MadeExperiment free =
       tests::made_experiment(launches, {}, 12, 2e-4, 60, 60.0, 0.1, 0.0, {.k_n_s_m = 0.1, .mu = 0.004});
   const diagnose::TrackSet none = diagnose::track_set(free.results, free.setups, true);
-  if (const auto start = diagnose::integrated_start(none, diagnose::effect_index(diagnose::ids::end_stop))) {
-    CHECK(start->global[0] == Approx(0.1).epsilon(0.1));
-  }
+  const std::size_t stop = diagnose::effect_index(diagnose::ids::end_stop);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(none);
+  CHECK_FALSE(diagnose::is_misfit(none, nominal));
+  const diagnose::MotionFit with =
+      diagnose::fit_with_effect(none, nominal, stop, diagnose::with_effect(none, nominal, stop, {1.0, 0.8}, {}));
+  CHECK(with.cost <= nominal.cost + 1e-6);
+  CHECK(with.cost > nominal.cost - 20.0);
 }

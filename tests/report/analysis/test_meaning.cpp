@@ -292,7 +292,7 @@ TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict mea
     diagnosis->verdict = diagnose::Verdict::effect;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90"));
     CHECK(tells(report::diagnosis_report("d", *diagnosis),
-                "An analysis of these data (glidelab analyze) leaves this out"));
+                "glidelab analyze leaves this out"));
     diagnosis->verdict = diagnose::Verdict::none;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " can show, nothing is missing"));
     CHECK_FALSE(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data"));
@@ -371,6 +371,7 @@ TEST_CASE("where one direction tells friction and slope together, the accelerati
   line.direction = 1;
   line.a0_m_s2 = core::estimate(2.005, 0.011, 10.0);
   results.configurations[0].lines = {line};
+  results.configurations[0].alpha_deg = tests::known(4.3, 0.01);
   CHECK(report::analysis_text(results).find("acceleration at v = 0") == std::string::npos);  // both are determined
   results.configurations[0].mu = {};
   CHECK(report::analysis_text(results).find("acceleration at v = 0: 2.005 ± 0.011 m/s² (g sin α − µ g cos α, from v > "

@@ -142,7 +142,7 @@ TEST_CASE("a hand that opens slowly has not let go at once") {
 
 TEST_CASE("a fall of few positions after its release is cut there, or not at all, and the search for it ends") {
   std::size_t cut = 0, all = 0;
-  for (const std::size_t after : {8, 9, 10, 12, 16}) {
+  for (const std::size_t after : {8, 9, 10, 12, 15}) {
     for (const double step_s : {1.0 / 30.0, 1.0 / 60.0}) {
       for (unsigned seed = 1; seed <= 6; ++seed) {
         CAPTURE(after, step_s, seed);

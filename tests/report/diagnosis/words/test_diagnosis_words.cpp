@@ -73,7 +73,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
        "here as in a fluid with 0.9 of the density of the body, and drags are then 0.1 times those given."},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"},
       {diagnose::FitsCutOff{{{{"tether"}, false}, {{"lens_distortion"}, true}}},
-       "The fits of tightening cable and lens distortion + an unnamed cause reached the limit on steps before a "
+       "The fits of tightening cable and lens distortion + an unnamed cause stopped at the limit on steps, before a "
        "minimum; these explanations may account for more"}};
   std::vector<bool> seen(std::variant_size_v<diagnose::AnyNote>, false);
   for (const auto& [note, part] : notes) {

@@ -195,8 +195,8 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.gap->before = 0.8;
   of.gap->after = 0.4;
   CHECK(contains(report::verdict_words(of),
-                 "On average no line is off by more than its scatter: it is the pattern of the deviations that speaks "
-                 "for a cause."));
+                 "On average no line is off by more than its scatter: the evidence for a cause is in the pattern of "
+                 "the deviations."));
 }
 
 TEST_CASE("so few clips have no interval, and the reason counts them") {
