@@ -39,7 +39,8 @@ TEST_CASE("a recorded force of the wrong sign is told, the right one is not, nor
   const auto push = [](double t_s) { return 0.3 * std::sin(5.0 * t_s) + 0.1 * std::sin(11.0 * t_s); };
   const auto diagnosed_with = [&](double sign) {
     tests::MadeEffect driven;
-    driven.force = [&](double, double, double, double t) { return push(t); };
+    // What acts is the push, whatever was recorded.
+    driven.force = [&, sign](double, double, double, double t) { return (1.0 - sign) * push(t); };
     driven.recorded = [&, sign](double t) { return sign * push(t); };
     const std::vector<tests::MadeLaunch> launches = {{0.4, 0.0, 0.0, 0.2}, {0.6, 0.0, 0.0, 0.2}};
     const tests::MadeExperiment made = tests::made_experiment(launches, driven, 9, 2e-4, 200, 60.0, 0.1);

@@ -291,8 +291,7 @@ TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict mea
   for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
     diagnosis->verdict = diagnose::Verdict::effect;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90"));
-    CHECK(tells(report::diagnosis_report("d", *diagnosis),
-                "glidelab analyze leaves this out"));
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "glidelab analyze leaves this out"));
     diagnosis->verdict = diagnose::Verdict::none;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " can show, nothing is missing"));
     CHECK_FALSE(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data"));

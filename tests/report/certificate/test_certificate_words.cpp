@@ -170,7 +170,8 @@ TEST_CASE("what the twins are without stands right below the answer, on the page
   const std::string text = report::certificate_text(made);
   const std::size_t line = text.find('\n');
   CHECK(report::effect_name("friction_drift") != "friction_drift");
-  CHECK(text.substr(line + 1).starts_with("The recording has what its twins lack: " + report::effect_name("friction_drift") + " (it"));
+  CHECK(text.substr(line + 1).starts_with(
+      "The recording has what its twins lack: " + report::effect_name("friction_drift") + " (it"));
   CHECK(report::certificate_page("a", made).html.find("The recording has what its twins lack") != std::string::npos);
 }
 

@@ -39,8 +39,8 @@ TEST_CASE(
   }
   CHECK_FALSE(shows(open, "class=\"tiles\""));
   CHECK(std::count(open.begin(), open.end(), '\n') < 125);
-  for (const char* part : {"Probability of each explanation", "How large the gap is", "Where the gap of the nominal model lies",
-                           "The gap, clip by clip", "Method"}) {
+  for (const char* part : {"Probability of each explanation", "How large the gap is",
+                           "Where the gap of the nominal model lies", "The gap, clip by clip", "Method"}) {
     INFO(part);
     CHECK(page.find(part, folds) != std::string::npos);
     CHECK_FALSE(shows(open, part));

@@ -106,7 +106,8 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
           "Nothing here reaches µ within 0.0001. phone comes nearest: expect µ within 0.0002, at most 0.00026 (") &&
           Contains("Its main limitation: light (no shot noise)"));
   const std::string html = report::requirement_report(requirement).html;
-  CHECK_THAT(html, Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise): 3.0 times</li>"));
+  CHECK_THAT(html,
+             Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise): 3.0 times</li>"));
   requirement.candidates[2].verdict = validate::Verdict::reached;
   CHECK_THAT(report::requirement_report(requirement).html, !Contains("<li><b>phone</b>"));
 }
