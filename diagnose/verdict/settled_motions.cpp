@@ -242,7 +242,7 @@ bool acts_throughout(std::size_t effect) {
 /// their noise, a fit with the law leaves at most a tenth.
 bool explains_by_law(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
   constexpr double kMostLeft = 0.1, kClearSds = 5.0;
-  if (!std::any_of(fit.effects.begin(), fit.effects.end(), acts_throughout)) return false;
+  if (fit.effects.empty() || !std::all_of(fit.effects.begin(), fit.effects.end(), acts_throughout)) return false;
   double before = 0.0, after = 0.0, count = 0.0;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];
@@ -260,7 +260,6 @@ bool explains_by_law(const TrackSet& set, const MotionFit& nominal, const Motion
 }  // namespace
 
 bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
-  if (explains_by_law(set, nominal, fit, trimmed)) return true;
   constexpr double kAboutAsFar = 2.0;
   const bool acts = std::any_of(fit.effects.begin(), fit.effects.end(), [](std::size_t e) {
     return e == effect_index(ids::end_stop) || e == effect_index(ids::tether);
@@ -268,7 +267,7 @@ bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const Moti
   const bool loses = std::any_of(fit.late.begin(), fit.late.end(), [](const std::vector<double>& motion) {
     return std::any_of(motion.begin(), motion.end(), [](double late) { return late != 0.0; });
   });
-  if (!acts && !loses) return false;
+  if (!acts && !loses) return explains_by_law(set, nominal, fit, trimmed);
   return held_out_gap(set, fit).value < kAboutAsFar * std::max(1.0, held_out_gap(trimmed, fit_nominal(trimmed)).value);
 }
 

@@ -27,9 +27,10 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
 std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed);
 
-/// Whether a fit to `set` explains the frames that `trimmed` lacks, which look like a hand or a stop. A law does if it
-/// leaves at most a tenth of what the nominal model leaves of them. An end stop, a cable or lost frames do if held-out
-/// positions lie about as far off as without these frames. What is left is then something else, which acts throughout.
+/// Whether a fit to `set` explains the frames that `trimmed` lacks, which look like a hand or a stop. Laws that act
+/// throughout do if they leave at most a tenth of what the nominal model leaves of them. An end stop, a cable or lost
+/// frames do if held-out positions lie about as far off as without these frames. What is left is then something else,
+/// which acts throughout.
 bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed);
 
 /// Finds the noise of every position from single frames and from what the images show of a codec, and sets outliers
