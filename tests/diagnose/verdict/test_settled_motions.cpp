@@ -5,7 +5,9 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
+#include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
+#include "tests/core/simulated_track.h"
 #include "tests/diagnose/made_motions.h"
 
 using namespace glidelab;
@@ -52,4 +54,33 @@ TEST_CASE("a recorded force of the wrong sign is told, the right one is not, nor
   const auto wrong = diagnosed_with(-1.0);
   REQUIRE(wrong);
   CHECK(wrong->part_of_chi2 < 0.1);
+}
+
+TEST_CASE("bounces that lose speed are no spring, whatever law beside one takes part of them") {
+  // A fifth of the speed is lost at a hard stop, as no spring does; 50 Hz and 1 cm, as of a motion sensor.
+  const tests::Law law{2.0, 0.003, 0.02};
+  for (const unsigned seed : {1U, 2U}) {
+    const tests::SimulatedMotion motion = tests::SimulatedMotion(0.2).slide(law, 15.0, 1.2, 0.8);
+    const core::TrackData track = tests::film(motion, {50.0, 15.0, 2e-3, seed, 0.01});
+    core::ClipSetup setup = tests::clip_setup(core::Launched::released, 2.0, 0.5);
+    setup.incline_sd_rad = 0.2 * 3.14159265 / 180.0;
+    core::AnalysisResults results;
+    results.gravity_m_s2 = tests::kGravity;
+    results.clips.push_back(core::analyze_motion(setup, track, {}));
+    const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(results, {setup}, {.without = {}, .jobs = 2});
+    // Most of the bounces are left out; a stop that shows in what is left is one, and leaves nothing.
+    REQUIRE(diagnosis.gap);
+    CHECK(diagnosis.points < 600);
+    if (diagnosis.verdict == diagnose::Verdict::effect) {
+      const std::string& first = diagnosis.effects.front().id;
+      CHECK((first == "end_stop" || first == "tether"));
+      CHECK(diagnosis.gap->after < 1.2);
+    } else {
+      CHECK(diagnosis.verdict == diagnose::Verdict::none);
+    }
+    REQUIRE(diagnosis.recovered.size() == 1);
+    REQUIRE(diagnosis.recovered[0].alpha_deg.estimate);
+    const core::Estimate& alpha = *diagnosis.recovered[0].alpha_deg.estimate;
+    CHECK(std::abs(alpha.value - 2.0) < 4.0 * alpha.sd);
+  }
 }
