@@ -192,7 +192,7 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::none && diagnosis.none < kRather && !diagnosis.ranking.empty()) {
     return fmt::format(
                "The nominal model explains these data to within their noise. They cannot exclude other causes, but "
-               "none is as likely as nothing being missing ({}); the likeliest is {} ({}).",
+               "no known effect is as likely as nothing being missing ({}); the likeliest is {} ({}).",
                percent(diagnosis.none), explanation_name(diagnosis.ranking.front().explanation),
                percent(diagnosis.ranking.front().probability)) +
            clip_gap_words(diagnosis);
