@@ -84,7 +84,8 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
   open.none = 0.35;
   open.ranking.front().probability = 0.26;
   const std::string rather = report::verdict_words(open);
-  CHECK(contains(rather, "cannot exclude other causes, but no known effect is as likely as nothing being missing (35 %)"));
+  CHECK(contains(rather,
+                 "cannot exclude other causes, but no known effect is as likely as nothing being missing (35 %)"));
   CHECK(contains(rather, "the likeliest is late release (26 %)"));
   open.none = 0.9;
   open.ranking.front().probability = 0.05;
