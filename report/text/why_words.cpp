@@ -25,7 +25,7 @@ struct ReasonWords {
     return "the speed hardly changes in the positions that are used, so they determine no slope";
   }
   std::string operator()(const unknown::NotBothLines& of) const {
-    return fmt::format("no line for {}: only motion in both directions separates friction from inclination{}",
+    return fmt::format("no line for {}; only motion in both directions separates friction from inclination{}",
                        of.minus && of.plus ? "v < 0 and none for v > 0"
                        : of.minus          ? "v < 0"
                                            : "v > 0",

@@ -199,7 +199,7 @@ TEST_CASE("a reason for several missing quantities is told once") {
   results.configurations[0].mu.why = results.configurations[0].alpha_deg.why = one_way;
   results.configurations[0].v_lim_m_s.why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
   const std::string text = report::analysis_text(results);
-  CHECK(text.find("µ and α are not determined: no line for v < 0: only motion in both directions separates friction "
+  CHECK(text.find("µ and α are not determined: no line for v < 0; only motion in both directions separates friction "
                   "from inclination") != std::string::npos);
   CHECK(text.find("terminal velocity is not determined: no line for v > 0") != std::string::npos);
 }
