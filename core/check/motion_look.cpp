@@ -43,8 +43,9 @@ constexpr double kGapSteps = 3.0;                           // median steps: a l
 constexpr double kMostUnseen = 0.2;                         // of the time
 constexpr double kLongestPush_m = 1.0;                      // at 2 g it would give 6 m/s
 constexpr double kOffStretch = 0.05;                        // of the distance that a stretch covers
-constexpr double kLostInNoise = 0.25;                       // of the distance: positions at rest span more than that,
-constexpr std::size_t kFewestToRest = 40;                   // if they are so many
+constexpr double kLostInNoise = 0.4;                        // of the distance: positions at rest span more than that,
+constexpr std::size_t kFewestToRest = 40;                   // if they are so many,
+constexpr double kLeastLost_m = 0.01;                       // and are not one step of rounding apart
 constexpr double kSureSds = 3.0;                            // of the acceleration of a stretch
 constexpr double kKeepsSpeed = 0.75;                        // of the speed at its end
 
@@ -318,7 +319,8 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   const double most = (falls ? kFarAboveGravity : kAboveGravity) * gravity_m_s2;
   if (look.counted) {
     book.add(Severity::unusable, found::Counted{*look.counted});
-  } else if (look.positions >= kFewestToRest && look.noise_m > kLostInNoise * look.distance_m) {
+  } else if (look.positions >= kFewestToRest && look.noise_m > kLeastLost_m &&
+             look.noise_m > kLostInNoise * look.distance_m) {
     book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
   } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});

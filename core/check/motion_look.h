@@ -8,10 +8,10 @@
 /// makes it exceed g by far. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a over six turns
 /// or more, or 95 % of it over two to five, of eight parabolas or more. Bend: the sagitta of the marker's path in the
 /// image over its length, by a parabola. Smooth: the scatter about neighbouring positions is below 1e-7 of the
-/// distance, which no camera or sensor reaches. Lost in noise: that scatter is above a quarter of the distance, of 40
-/// positions or more. Counted: x changes by exactly 1, or by a multiple of a quarter turn, from each row to the next.
-/// Pushed: at first it speeds up by more than gravity, in parabolas through five points each, and has not moved the
-/// other way before.
+/// distance, which no camera or sensor reaches. Lost in noise: that scatter is above 0.4 of the distance and 1 cm, of
+/// 40 positions or more. Counted: x changes by exactly 1, or by a multiple of a quarter turn, from each row to the
+/// next. Pushed: at first it speeds up by more than gravity, in parabolas through five points each, and has not moved
+/// the other way before.
 #pragma once
 
 #include <optional>

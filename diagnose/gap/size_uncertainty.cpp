@@ -42,4 +42,9 @@ double SizeUncertainty::sd(Eigen::Index global) const {
   return std::sqrt(std::max({0.0, model_(global, global), between_clips_(global, global)}));
 }
 
+double SizeUncertainty::chi2(const std::vector<Eigen::Index>& globals, const Eigen::VectorXd& values) const {
+  const Eigen::MatrixXd covariance = model_(globals, globals);
+  return values.dot(base::solve_positive(covariance, values).col(0));
+}
+
 }  // namespace glidelab::diagnose

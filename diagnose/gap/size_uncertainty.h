@@ -12,6 +12,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 #include "diagnose/fit/motion_fit.h"
 
 namespace glidelab::diagnose {
@@ -25,6 +27,9 @@ class SizeUncertainty {
   double sd(const Eigen::VectorXd& by) const;
   /// Standard deviation of one of the common parameters.
   double sd(Eigen::Index global) const;
+  /// v' C⁻¹ v of these common parameters, C by the fit's own model: what they have in common with others, and is not
+  /// determined, does not count.
+  double chi2(const std::vector<Eigen::Index>& globals, const Eigen::VectorXd& values) const;
 
  private:
   Eigen::MatrixXd model_, between_clips_;

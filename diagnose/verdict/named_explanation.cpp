@@ -123,23 +123,24 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
   return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {
     const EffectInfo& info = effect_list()[e];
     bool has_common = false;
-    double sizes = 0.0, chi2 = 0.0;
+    std::vector<Eigen::Index> several;
     for (std::size_t g = 0; g < globals.size(); ++g) {
       if (globals[g].parameter == nullptr || globals[g].effect != e) continue;
       const std::size_t slot = globals[g].parameter->slot.parameter;
       const bool is_size = slot >= info.law.size && slot < info.law.size + info.law.sizes;
       const auto at = static_cast<Eigen::Index>(g);
       if (info.search == Search::spread) {
-        sizes += 1.0;
-        chi2 += std::pow(fit.at.global[at] / uncertainty.sd(at), 2);
+        several.push_back(at);
         continue;
       }
       if (!is_size || globals[g].parameter->each != Each::experiment) continue;
       if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
       has_common = true;
     }
-    if (sizes > 0.0 && !follows_each_clip(e)) {
-      return chi2 > boost::math::quantile(boost::math::complement(boost::math::chi_squared(sizes), kByChance));
+    if (!several.empty() && !follows_each_clip(e)) {
+      const boost::math::chi_squared by_chance(static_cast<double>(several.size()));
+      return uncertainty.chi2(several, fit.at.global(several)) >
+             boost::math::quantile(boost::math::complement(by_chance, kByChance));
     }
     return !has_common;
   });

@@ -97,7 +97,8 @@ bool trust_stated(Comparison& comparison) {
   std::vector<Hypothesis*> resolving;
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || one.effects.size() != 1 || one.fit <= 0) continue;
-    if (gain_in_stated(nominal, comparison.fits[static_cast<std::size_t>(one.fit)]) < kClearInStated) continue;
+    const MotionFit& fit = comparison.fits[static_cast<std::size_t>(one.fit)];
+    if (gain_in_stated(nominal, fit) < kClearInStated || !(chi2_of_stated(fit) < kClearInStated)) continue;
     resolving.push_back(&one);
     logs.push_back(one.log_evidence + log_prior_odds(comparison, one));
   }

@@ -41,8 +41,8 @@ void keep_drag_of_air(Comparison& comparison);
 void set_unknown(double unknown, Comparison& comparison);
 
 /// Where no gap shows, a contradiction of stated inclinations is still neither noise nor a small imperfection. The
-/// single effects that resolve it (gain_in_stated()) then share what an unknown cause, the wrong statement among them,
-/// leaves: 0.9. Whether there are any; nothing changes otherwise.
+/// single effects that resolve it (gain_in_stated(), with no such contradiction left) then share what an unknown cause,
+/// the wrong statement among them, leaves: 0.9. Whether there are any; nothing changes otherwise.
 bool trust_stated(Comparison& comparison);
 
 /// Moves the probability of explanations that leave more than half of the gap to `unknown`: they cannot name its cause.

@@ -165,6 +165,7 @@ TEST_CASE("a tracker that jumps to and fro shows no motion, and a body at rest i
   CHECK(only<core::found::LostInNoise>(findings(positions([&](double) { return other(random) ? 2.0 : 0.04; }))));
   CHECK(findings(positions([](double) { return 0.3; }, 1e-3)).empty());
   CHECK(findings(positions(run, 0.02)).empty());
+  CHECK(findings(positions([&](double) { return other(random) ? 0.301 : 0.3; }, 0.0)).empty());  // a step of rounding
   Positions few = positions([](double) { return 0.3; }, 1e-3);
   few.t_s.resize(12);
   few.x_m.resize(12);

@@ -112,19 +112,23 @@ TEST_CASE("several sizes of one kind are certain if they are together farther fr
   const Eigen::Index sizes = fit.at.global.size() - first;
   REQUIRE(sizes > 3);
   const diagnose::SizeUncertainty uncertainty(named.set, fit);
-  const auto certain_at = [&](double sds, Eigen::Index many) {
-    for (Eigen::Index g = 0; g < sizes; ++g) {
-      fit.at.global[first + g] = g < many ? sds * uncertainty.sd(first + g) : 0.0;
-    }
+  std::vector<Eigen::Index> globals;
+  for (Eigen::Index g = 0; g < sizes; ++g) globals.push_back(first + g);
+  // Any direction, scaled so that v' C⁻¹ v is what is asked for; chi² of n degrees has its 95 % quantile below 2.4 n
+  // from n = 4 on, and above 1.5 n up to n = 15.
+  const auto certain_at = [&](const Eigen::VectorXd& along, double chi2) {
+    const Eigen::VectorXd scaled = along * std::sqrt(chi2 / uncertainty.chi2(globals, along));
+    for (Eigen::Index g = 0; g < sizes; ++g) fit.at.global[first + g] = scaled[g];
     return diagnose::has_certain_size(named.set, fit, {friction});
   };
-  // Sums of squares of n normal numbers: chi² of n degrees, whose 95 % quantile is 14.07 for seven and 12.59 for six.
   const double n = static_cast<double>(sizes);
-  CHECK_FALSE(certain_at(0.0, sizes));
-  CHECK_FALSE(certain_at(1.2, sizes));       // 1.44 n
-  CHECK(certain_at(std::sqrt(2.4), sizes));  // above the quantile for any n from four on
-  CHECK_FALSE(certain_at(std::sqrt(n), 1));  // one of them, with the expectation of all
-  CHECK(certain_at(-std::sqrt(2.4 * n), 1));
+  REQUIRE(n < 15.0);
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(sizes), one = Eigen::VectorXd::Unit(sizes, 1);
+  for (const Eigen::VectorXd& along : {all, one}) {
+    CHECK_FALSE(certain_at(along, 1.5 * n));
+    CHECK(certain_at(along, 2.4 * n));
+    CHECK(certain_at(-along, 2.4 * n));
+  }
   const std::size_t scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
   diagnose::MotionFit scattering = fit_with(diagnose::ids::clip_scatter);
   scattering.at.global

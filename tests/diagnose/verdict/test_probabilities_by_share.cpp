@@ -216,6 +216,9 @@ TEST_CASE("what resolves a contradicted inclination takes the place of causes th
   CHECK(probability_of(off, {kDrag}) == 0.0);
   CHECK(off.effect_probability[scale] == Approx(0.6));
   CHECK(off.all.front().effects == std::vector{scale});
+  Comparison part = made(0.02);  // eight, of which five remain
+  for (std::size_t k = 2; k < 4; ++k) part.fits[k] = fit_at(0.05);
+  CHECK_FALSE(diagnose::trust_stated(part));
   Comparison near = made(0.06);  // four
   CHECK_FALSE(diagnose::trust_stated(near));
   CHECK(probability_of(near, {kDrag}) == 0.1);
