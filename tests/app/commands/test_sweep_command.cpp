@@ -118,7 +118,7 @@ TEST_CASE("What a sweep refuses is one clear message with the right status") {
     CHECK(result.err.find("1200000000 runs") != std::string::npos);
     CHECK(result.err.find("--many-runs") != std::string::npos);
     CHECK(result.err.find("of disk") != std::string::npos);
-    CHECK(result.err.find(" threads") != std::string::npos);
+    CHECK(result.err.find(" with --jobs ") != std::string::npos);
     CHECK_FALSE(fs::exists(out / "sweep.sqlite"));
   }
   SECTION("a database of another sweep") {
