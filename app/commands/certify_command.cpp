@@ -54,8 +54,7 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
     display.clear();
     say(options.common,
         fmt::format("{} twins will be filmed, and another {} to {} with one thing improved. Judging by the first, this "
-                    "takes at most "
-                    "{} of processor time",
+                    "takes at most {} of processor time",
                     size.twins, size.least_of_changes, size.most_of_changes, duration_text(size.processor_time_s)));
   };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());

@@ -194,11 +194,6 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
   return attempts;
 }
 
-/// Where it is fast enough, the sign of its speed; 0 elsewhere.
-int direction_of(std::span<const MotionPoint> points, std::size_t at) {
-  return !points[at].smoothed || points[at].v_m_s == 0.0 ? 0 : points[at].v_m_s < 0.0 ? -1 : 1;
-}
-
 /// Between two stretches of free motion that have the same direction. Where it turns, it bounced, or stood still.
 std::vector<Interruption> interruptions_of(std::span<const MotionPoint> points) {
   constexpr double kBack = 0.2;  // of the speed before: at rest it is noise
@@ -211,14 +206,13 @@ std::vector<Interruption> interruptions_of(std::span<const MotionPoint> points) 
       return point.left_out == LeftOut::stop || point.left_out == LeftOut::hand || point.left_out == LeftOut::rest;
     };
     const auto first = std::find_if(between.begin(), between.end(), handled);
-    bool turns = false;
-    for (std::size_t k = free ? *free : i; k < i; ++k) {
-      turns = turns ||
-              (points[k].smoothed && points[k].v_m_s * points[*free].v_m_s < -kBack * std::pow(points[*free].v_m_s, 2));
-    }
-    if (first != between.end() && !turns && direction_of(points, *free) * direction_of(points, i) > 0) {
+    if (first != between.end() && points[*free].v_m_s * points[i].v_m_s > 0.0) {
+      const double before = points[*free].v_m_s;
+      const bool turns = std::any_of(between.begin(), between.end(), [&](const MotionPoint& point) {
+        return point.smoothed && point.v_m_s * before < -kBack * before * before;
+      });
       const auto last = std::find_if(between.rbegin(), between.rend(), handled);
-      found.push_back({first->t_s, last->t_s});
+      if (!turns) found.push_back({first->t_s, last->t_s});
     }
     free = i;
   }

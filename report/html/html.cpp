@@ -181,8 +181,7 @@ details.part[open] { padding-bottom: 0.8rem; }
   figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); } }
 @media (max-width: 600px) {
   th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } .tile b { font-size: 1.05rem; } main { padding: 0.8rem 0.8rem 2rem; }
-  th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
-  figure:has(img[src^="data:image/svg"]) { overflow-x: auto; } figure img[src^="data:image/svg"] { min-width: 460px; }
+  th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */ figure:has(img[src^="data:image/svg"]) { overflow-x: auto; } figure img[src^="data:image/svg"] { min-width: 460px; }
 }
 @media screen and (max-width: 600px) {  /* a row becomes a block: its name, and each number under the title of its column */
   table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }

@@ -38,7 +38,7 @@ TEST_CASE(
     at = std::min(found, open.size());
   }
   CHECK_FALSE(shows(open, "class=\"tiles\""));
-  CHECK(std::count(open.begin(), open.end(), '\n') < 125);
+  CHECK(std::count(open.begin(), open.end(), '\n') < 120);
   for (const char* part : {"Probability of each explanation", "How large the gap is",
                            "Where the gap of the nominal model lies", "The gap, clip by clip", "Method"}) {
     INFO(part);
