@@ -15,6 +15,7 @@
 #include "base/files/file_io.h"
 #include "base/text/readable_text.h"
 #include "base/text/trimmed.h"
+#include "core/track/clock_time.h"
 #include "core/track/number_field.h"
 #include "core/track/text_encoding.h"
 #include "core/track/workbook.h"
@@ -44,7 +45,9 @@ Thousands thousands_of(const Format& format) {
 
 using Fields = std::vector<std::string_view>;
 
+/// Or a time of day, which counts as one.
 bool is_number(std::string_view field, const Format& format) {
+  if (clock_time_in(field)) return true;
   return format.decimal == kOfColumn ? number_in(field, '.') || number_in(field, ',')
                                      : number_in(field, format.decimal, thousands_of(format)).has_value();
 }
@@ -181,13 +184,14 @@ bool is_words(std::string_view field) {
          std::ranges::any_of(field, [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
 }
 
-/// Whether all fields outside the columns of numbers are words; between blanks, behind the last number only.
+/// Whether all fields outside the columns of numbers are dates or words; between blanks, words behind the last number
+/// only.
 bool has_words_besides(const Fields& fields, const Format& format, const std::vector<bool>& of_numbers) {
   bool after_words = false;
   for (std::size_t c = 0; c < fields.size(); ++c) {
     const bool number_here = c < of_numbers.size() && of_numbers[c];
     if (number_here && after_words && format.delimiter == kBlanks) return false;
-    if (number_here || is_missing(fields[c])) continue;
+    if (number_here || is_missing(fields[c]) || is_date(fields[c])) continue;
     if (!is_words(fields[c])) return false;
     after_words = true;
   }
@@ -285,6 +289,24 @@ bool is_row_of_other_sign(const Fields& row, const Format& format) {
 base::Issue other_sign(const std::string& file, const Line& line, const Format& format) {
   return {file, line.number, "", fmt::format("\"{}\", with another decimal sign than the rows below", line.text),
           fmt::format("a decimal {} throughout", format.decimal == ',' ? "comma" : "point")};
+}
+
+/// Times of day become seconds from the first of them, where no other column holds times; elsewhere, they and dates are
+/// no values, as other text.
+void count_times_of_day(ColumnTable& table, const std::vector<bool>& of_clock) {
+  bool others = false;
+  for (std::size_t c = 0; c < of_clock.size(); ++c)
+    others = others || (!of_clock[c] && is_time_column(table.columns[c]));
+  for (std::size_t c = 0; c < of_clock.size(); ++c) {
+    TableColumn& column = table.columns[c];
+    if (!of_clock[c]) continue;
+    if (others) {
+      std::ranges::fill(column.values, std::nullopt);
+    } else {
+      count_from_first(column.values);
+      column.unit = "s";
+    }
+  }
 }
 
 /// A delimiter at the end of each line makes a column without a name and without values.
@@ -438,6 +460,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
                       ambiguous ? "one for each name (a decimal comma needs another delimiter than the comma)"
                                 : "one for each name"});
   }
+  std::vector<bool> of_clock(width, false);
   for (std::size_t r = first_data; r < rows.size(); ++r) {
     table.line.push_back(lines[r].number);
     for (std::size_t c = 0; c < width; ++c) {
@@ -445,6 +468,10 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
       std::optional<double> value;
       if (!is_missing(field)) {
         value = number_in(field, decimals[c], thousands_of(*format));
+        if (!value) {
+          value = clock_time_in(field);
+          of_clock[c] = of_clock[c] || value.has_value();
+        }
         std::vector<base::Issue>& texts = table.columns[c].texts;
         if (!value && texts.size() < kMostFieldIssues) {
           texts.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
@@ -455,6 +482,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
     }
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
+  count_times_of_day(table, of_clock);
   drop_empty_columns_at_end(table);
   put_side_by_side(table);
   return table;

@@ -10,7 +10,9 @@
 /// ("Run,Time,Position"), which become columns as of runs side by side, each value in its row; NaN for no value; the
 /// Unicode minus sign (U+2212); blanks between thousands. A decimal comma goes with a comma between fields if each
 /// number that has one is in quotes. The delimiter and the decimal sign are chosen so that most lines consist only of
-/// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value.
+/// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value. Times of
+/// day ("14:03:07.25", also after a date) are seconds from the first row where no other column is named as one of
+/// times, and no values elsewhere.
 /// Brackets around digits belong to the name: "cal[0]".
 #pragma once
 
