@@ -180,6 +180,8 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.marker_level = look.marker_level;
   clip.pixel_noise = look.pixel_noise;
   clip.block_steps = look.block_steps;
+  clip.combs = look.combs;
+  clip.frames_alone = look.file.codec == "MJPG";
 }
 
 /// Empty for fewer than some twenty outlines (a centroid has none).

@@ -239,6 +239,11 @@ struct StrongCompression {
   double block_steps = 0.0;
 };
 
+/// The frames are woven from fields half a frame apart.
+struct Interlaced {
+  double frame_rate_hz = 0.0;
+};
+
 // Its times.
 
 struct OtherRateInFile {
@@ -432,7 +437,7 @@ using AnyFound =
                  found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark,
                  found::LittleContrast, found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls,
                  found::ShadowEdge, found::LightFalls, found::LightFlickers, found::StrongCompression,
-                 found::OtherRateInFile, found::UnevenStamps, found::Jumps, found::FramesRepeated,
+                 found::Interlaced, found::OtherRateInFile, found::UnevenStamps, found::Jumps, found::FramesRepeated,
                  found::AssumedForFile, found::NoPlumbAngle, found::MassesApart, found::MarkerSizeOff,
                  found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
                  found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians,

@@ -16,6 +16,9 @@ namespace {
 // docs/reference/check.md gives the reason for each limit.
 constexpr double kMostSizeDifference = 0.15;      // of the logarithm
 constexpr double kUnusableSizeDifference = 0.26;  // 30 %
+// Of a marker whose outline is no circle with the stated diameter: a square has the area of a disc 13 % wider than its
+// side, and glare widens, or a threshold narrows, what is saturated.
+constexpr double kMostVagueDifference = 0.4, kUnusableVagueDifference = 0.7;
 constexpr double kMostSmearForSize = 0.5;  // marker diameters of smear, above which an outline is no measure of size
 constexpr double kLeastShareAgainstLaunch = 0.25;  // share of the points that move freely
 constexpr double kLargePull = 0.05;    // of the diameter: a centroid of its light so far off its outline's centre
@@ -26,6 +29,14 @@ double size_off(const ClipCheck& clip) {
   return clip.marker_expected_px > 0.0 && clip.marker_px > 0.0
              ? std::abs(std::log(clip.marker_px / clip.marker_expected_px))
              : 0.0;
+}
+
+bool has_vague_size(const ClipCheck& clip) {
+  const bool saturated = clip.marker_level && *clip.marker_level > kSaturatedLevel;
+  return saturated || std::any_of(clip.notes.begin(), clip.notes.end(), [](const Note& note) {
+           const auto* const measured = std::get_if<MarkerMeasuredBy>(&note);
+           return measured != nullptr && measured->what != MarkerMeasuredBy::What::shading;
+         });
 }
 
 LengthSources lengths_of(const Experiment& experiment) {
@@ -55,8 +66,9 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
     if (!size_disagrees(clip)) continue;
     names.push_back(clip.name);
     if (worst == nullptr || size_off(clip) > size_off(*worst)) worst = &clip;
-    contradicts = contradicts || (size_off(clip) > kUnusableSizeDifference &&
-                                  likely_blur_px(clip) <= kMostSmearForSize * clip.marker_px);
+    contradicts =
+        contradicts || (size_off(clip) > (has_vague_size(clip) ? kUnusableVagueDifference : kUnusableSizeDifference) &&
+                        likely_blur_px(clip) <= kMostSmearForSize * clip.marker_px);
   }
   if (worst == nullptr) return;
   findings.push_back({contradicts ? Severity::unusable : Severity::change,
@@ -187,7 +199,10 @@ bool is_lit_from_one_side(const ClipCheck& clip) {
 }
 
 bool size_disagrees(const ClipCheck& clip) {
-  if (size_off(clip) <= kMostSizeDifference) return false;
+  if (size_off(clip) <= (has_vague_size(clip) ? kMostVagueDifference : kMostSizeDifference)) return false;
+  // A smear makes it longer.
+  const double smear_px = std::max(clip.measured_blur_px.value_or(0.0), clip.blur_px.value_or(0.0));
+  if (clip.marker_px > clip.marker_expected_px && clip.marker_px < clip.marker_expected_px + smear_px) return false;
   // What is seen of it is the lit part.
   const bool lit_part = is_lit_from_one_side(clip) && clip.marker_px < clip.marker_expected_px &&
                         clip.marker_px > kLeastLitPart * clip.marker_expected_px;

@@ -14,8 +14,12 @@ namespace glidelab::core {
 /// Whether the marker's light is centred off its outline's centre by more than a twentieth of its diameter.
 bool is_lit_from_one_side(const ClipCheck& clip);
 
-/// Whether the marker's size in the image differs by more than 15 % from what its diameter and the scale predict. A
-/// smaller one does not if it is lit from one side: the fit finds the lit part.
+/// The level, of the largest code, above which a marker is saturated.
+inline constexpr double kSaturatedLevel = 0.985;
+
+/// Whether the marker's size in the image differs by more than 15 % from what its diameter and the scale predict (by
+/// more than a half if it is no disc or saturated). One that its own smear makes larger does not, nor a smaller one
+/// that is lit from one side: the fit finds the lit part.
 bool size_disagrees(const ClipCheck& clip);
 
 /// The smear at the top speed, px: measured, or from the stated exposure, or from an exposure as long as the frame

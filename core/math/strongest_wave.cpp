@@ -20,6 +20,7 @@ constexpr double kFineness = 4.0;               // frequencies a width of the pe
 constexpr double kFewestPeriods = 3.0;          // a series
 constexpr double kMedianGainsSubtracted = 4.0;  // of the gains at all frequencies: what noise may reach
 constexpr std::size_t kMostFrequencies = 6000;  // frequencies
+constexpr double kApart = 0.1;                  // of the determinant of a cosine and a sine that are independent
 
 /// A series minus its mean, slope and curvature, and the orthonormal terms that were removed.
 class Flat {
@@ -47,6 +48,7 @@ class Flat {
 
   struct At {
     double explained = 0.0, a = 0.0, b = 0.0, variance = 0.0;  ///< variance of a component
+    double squared = 0.0;                                      ///< amplitude
   };
   At at(double f_hz) const {
     const auto n = rest_.size();
@@ -72,6 +74,10 @@ class Flat {
       at.explained = at.a * cr + at.b * sr;
     }
     at.explained = std::clamp(at.explained, 0.0, squares_);
+    // Near half the sampling rate the sine is all but zero in every sample, and a and b are large and cancel: a wave is
+    // as large as what the samples show of it.
+    const bool apart = determinant > kApart * 0.25 * static_cast<double>(n * n);
+    at.squared = apart ? at.a * at.a + at.b * at.b : 2.0 * at.explained / static_cast<double>(n);
     at.variance = 2.0 * (squares_ - at.explained) / static_cast<double>(n * n);
     return at;
   }
@@ -144,7 +150,7 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
   for (const Flat& one : series) {
     penalty += std::log(one.count());
     const Flat::At at = one.at(wave.f_hz);
-    squares += (at.a * at.a + at.b * at.b) / static_cast<double>(series.size());
+    squares += at.squared / static_cast<double>(series.size());
     variance += at.variance / static_cast<double>(series.size() * series.size());
   }
   wave.log_evidence = best - penalty - kMedianGainsSubtracted * median_of(gains);
@@ -159,7 +165,7 @@ Amplitude amplitude_at(const Series& series, double f_hz) {
   if (series.t_s.size() < kFewestSamples) return {};
   const Flat flat(series);
   const Flat::At at = flat.at(f_hz);
-  return {std::hypot(at.a, at.b), std::sqrt(at.variance)};
+  return {std::sqrt(at.squared), std::sqrt(at.variance)};
 }
 
 }  // namespace glidelab::core

@@ -16,7 +16,8 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestOfSteady = 5;
-constexpr double kSteady = 0.05;  // of g
+constexpr double kSteady = 0.05;   // of g
+constexpr double kConstant = 0.1;  // of the speed: its change from the first position to the last
 constexpr double kSds = 2.0;
 
 struct Measured {
@@ -42,6 +43,9 @@ std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2
   const double var_v = 12.0 * noise2 / (n * span_s * span_s), var_a = 720.0 * noise2 / (n * std::pow(span_s, 4));
   const double v = parabola.v, by_g = parabola.a / gravity_m_s2, sd_by_g = std::sqrt(var_a) / gravity_m_s2;
   if (!(v > 0.0) || !(std::abs(by_g) + kSds * sd_by_g < kSteady)) return {};
+  // A liquid drives a body by far less than its weight, so that a small part of g may still change its speed.
+  const double gained = std::abs(parabola.a) * span_s;
+  if (std::abs(by_g) > kSds * sd_by_g && gained > kConstant * v) return {};
   const Measured speed{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2), 0.25 * v * by_g};
   return speed.variance > 0.0 ? std::optional(speed) : std::nullopt;
 }

@@ -51,6 +51,9 @@ struct NoiseAtLevel {
   double known_to = 0.0;    ///< standard deviation of sd_code
 };
 
+/// Of the combs that go on (ImageRecord::combs): above it a film is interlaced.
+inline constexpr double kInterlacedShare = 0.12;
+
 struct ImageRecord {
   int width_px = 0, height_px = 0;
   double full_code = 255.0;        ///< largest code
@@ -60,6 +63,7 @@ struct ImageRecord {
   std::vector<MarkerLook> marker;
   std::vector<SceneLook> scene;
   BlockSteps steps;
+  double combs = 0.0;  ///< share of combs at the edges of what moves that go on over rows (interlacing.h)
   /// Variance of a pixel's change over two frames, over that from one to the next: 1 if the noise is new in every
   /// frame.
   std::optional<double> noise_memory;

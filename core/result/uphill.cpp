@@ -8,7 +8,13 @@
 namespace glidelab::core {
 
 bool seems_uphill(const InclineContradiction& contradiction) {
-  if (!contradiction.gross || contradiction.beyond_gravity || contradiction.bound != 0) return false;
+  if (!contradiction.gross || contradiction.beyond_gravity) return false;
+  if (contradiction.bound != 0) {  // the other sign lies beyond the bound
+    constexpr double kCareless_deg = 1.25;
+    const double turned_deg = -contradiction.stated.deg;
+    return turned_deg * contradiction.deg > 0.0 &&
+           contradiction.bound * (turned_deg - contradiction.deg) > -kCareless_deg;
+  }
   ConfigurationResult found;
   found.alpha_deg =
       determined(estimate(contradiction.deg, contradiction.sd_deg, std::numeric_limits<double>::infinity()));

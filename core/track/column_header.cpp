@@ -159,7 +159,8 @@ bool is_height_column(const TableColumn& column) {
   static const std::vector<std::string> kHeights{
       "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",
       "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
-      "hoogte",      "vertical position", "z"};
+      "hoogte",      "vertical position", "z",          "altitude",   "alt",          "elevation",    "altitud",
+      "altitudine"};
   const std::string name = lower(column.name);
   if (is_time_column(column)) return false;
   return name.ends_with("y-koordinate") || std::find(kHeights.begin(), kHeights.end(), name) != kHeights.end();

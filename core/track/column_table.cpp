@@ -178,10 +178,11 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
   return best;
 }
 
-/// A label or a remark; no date and no number with another decimal sign.
+/// A label, a mark or a remark; no date that was a number, and no number with another decimal sign or with signs
+/// between its thousands.
 bool is_words(std::string_view field) {
   return !number_in(field, '.') && !number_in(field, ',') && !is_month_and_number(field) &&
-         std::ranges::any_of(field, [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
+         field.find_first_not_of("0123456789.,+-' ") != std::string_view::npos;
 }
 
 /// Whether all fields outside the columns of numbers are dates or words; between blanks, words behind the last number

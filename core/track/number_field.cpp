@@ -1,6 +1,7 @@
 #include "core/track/number_field.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -97,7 +98,10 @@ std::vector<std::string_view> split_fields(std::string_view line, char delimiter
 }
 
 bool is_missing(std::string_view field) {
-  return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
+  static constexpr std::array<std::string_view, 18> kSpellings{
+      "",   "NaN", "nan", "NAN",  "-",    "--",   "---",  "\xE2\x80\x93", "\xE2\x80\x94",
+      "NA", "N/A", "n/a", "null", "NULL", "None", "#N/A", "#NV",          "#DIV/0!"};
+  return std::ranges::find(kSpellings, field) != kSpellings.end();
 }
 
 std::optional<double> number_in(std::string_view field, char decimal, Thousands thousands) {

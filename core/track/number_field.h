@@ -13,7 +13,7 @@ inline constexpr char kBlanks = ' ';  ///< as a delimiter: any number of blanks 
 /// belongs to the name before it.
 std::vector<std::string_view> split_fields(std::string_view line, char delimiter);
 
-/// Nothing, or a spelling of "not a number".
+/// Nothing, or a spelling of "no value": "NaN", "NA", "null", a dash, "#N/A", …
 bool is_missing(std::string_view field);
 
 /// Whether a plain blank may stand between thousands. Where commas separate the fields it may not: "40,5 123,5" are two

@@ -398,6 +398,19 @@ double seconds_of(const ColumnTable& table, const TableColumn& column, std::vect
   return factor_of(table, column, seconds_per, "s, ms, us or min", "seconds", notes);
 }
 
+std::optional<std::size_t> first_repeated(const TableColumn& times) {
+  const std::vector<double> steps = steps_of(times);
+  const bool falls = std::ranges::any_of(steps, [](double step) { return step < 0.0; });
+  if (falls || std::ranges::none_of(steps, goes_up)) return {};
+  std::optional<double> last;
+  for (std::size_t row = 0; row < times.values.size(); ++row) {
+    if (!times.values[row]) continue;
+    if (last && *last == *times.values[row]) return row;
+    last = times.values[row];
+  }
+  return {};
+}
+
 bool rises_mostly(const TableColumn& times) {
   const std::vector<double> steps = steps_of(times);
   return 2 * static_cast<std::size_t>(std::ranges::count_if(steps, goes_up)) >= steps.size();

@@ -252,6 +252,13 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     throw base::InputError(std::move(texts));
   }
   if (!rises_mostly(t)) {
+    if (const std::optional<std::size_t> row = first_repeated(t)) {
+      throw base::InputError(base::Issue{
+          table.file, table.line[*row], fmt::format("column \"{}\"", t.text),
+          fmt::format("{:.10g} again, and most values repeat the one before", *t.values[*row]),
+          "a time in each row that is above the last: export times with more digits, or leave out rows that "
+          "stand twice"});
+    }
     throw base::InputError(
         base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text), "values that do not increase",
                     "times; a table without them, such as x and y alone, says nothing about a motion"});

@@ -392,6 +392,11 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
     for (const auto& look : clip.record->marker) radii.push_back(2.0 * std::sqrt(look.vv_px2));
     longest_s = std::max(longest_s, 1.0 / clip.camera.frame_rate_hz);
   }
+  // An outline that is fitted with a fixed shape tells nothing of a smear.
+  const auto differ = [&](double Sample::*moment) {
+    return std::ranges::any_of(samples, [&](const Sample& s) { return s.*moment != samples.front().*moment; });
+  };
+  if (!differ(&Sample::stretch) || !differ(&Sample::shear)) return result;
   result.radius_px = core::median_of(radii);
   result.fastest_px_s = fastest_of(samples);
   if (!(result.fastest_px_s > kSlowest_px_s)) return result;

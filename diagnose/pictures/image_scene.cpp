@@ -84,18 +84,36 @@ std::optional<image::LightAlong::Pull> pull_of_light(const std::vector<FilmedCli
   return image::LightAlong::Pull{pull, change};
 }
 
+/// The speed of the marker's image at each look, px/s, from the looks before and after.
+std::vector<double> image_speeds(const std::vector<core::MarkerLook>& looks) {
+  std::vector<double> speeds(looks.size(), 0.0);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const core::MarkerLook &before = looks[i == 0 ? i : i - 1], &after = looks[std::min(i + 1, looks.size() - 1)];
+    const double time_s = after.t_s - before.t_s;
+    if (time_s > 0.0) speeds[i] = std::hypot(after.u_px - before.u_px, after.v_px - before.v_px) / time_s;
+  }
+  return speeds;
+}
+
 }  // namespace
 
 /// Light along the path from the brightness of the marker or, if that is dark, of what is behind it, for glare, a codec
-/// and the black level act on a dark one: ln(brightness) = a + g s + q s² about the image's middle.
+/// and the black level act on a dark one: ln(brightness) = a + g s + q s² + r w about the image's middle. w is the
+/// speed of the marker's image over the largest: a long exposure smears what is fast, and makes it paler.
 void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
-  const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
+  const auto columns = static_cast<Eigen::Index>(clips.size() + 3);
   std::vector<Eigen::VectorXd> rows;
   std::vector<double> values;
   double px_per_m = 0.0, reach = 0.0;
+  double fastest = 0.0;
+  for (const FilmedClip& clip : clips) {
+    for (const double speed : image_speeds(clip.record->marker)) fastest = std::max(fastest, speed);
+  }
   for (std::size_t c = 0; c < clips.size(); ++c) {
     px_per_m += clips[c].px_per_m / static_cast<double>(clips.size());
-    for (const core::MarkerLook& look : clips[c].record->marker) {
+    const std::vector<double> speeds = image_speeds(clips[c].record->marker);
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      const core::MarkerLook& look = clips[c].record->marker[i];
       const double code = look.background + std::max(0.0, look.amplitude);
       if (!(code > 0.0) || code > kSaturatedCode * clips[c].record->full_code) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
@@ -103,8 +121,9 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
           clips[c].down ? look.v_px - 0.5 * clips[c].record->height_px : look.u_px - 0.5 * clips[c].record->width_px;
       const double s = along_px / std::max(1.0, clips[c].px_per_m);
       row[static_cast<Eigen::Index>(c)] = 1.0;
-      row[columns - 2] = s;
-      row[columns - 1] = s * s;
+      row[columns - 3] = s;
+      row[columns - 2] = s * s;
+      row[columns - 1] = fastest > 0.0 ? speeds[i] / fastest : 0.0;
       reach = std::max(reach, std::abs(s));
       rows.push_back(std::move(row));
       values.push_back(std::log(code));
@@ -119,9 +138,9 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
   const Eigen::MatrixXd inverse = base::inverse_positive(normal);
   const Eigen::VectorXd found = base::product(inverse, base::transposed_product(design, data));
   const double variance = (data - base::product(design, found)).squaredNorm() / static_cast<double>(rows.size());
-  const double gradient = found[columns - 2];
+  const double gradient = found[columns - 3];
   // Neighbouring frames share the pixels' own response; one in ten counts.
-  const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
+  const double sd = std::sqrt(10.0 * variance * inverse(columns - 3, columns - 3));
   ImageFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_either_sign_evidence(gradient / usual, 10.0 / usual);

@@ -143,7 +143,8 @@ struct ImpossibleSizes {
 /// A unit of lengths or times, or a scale, that the positions of a clip make doubtful (core/check/motion_look.h).
 struct DoubtfulUnit {
   std::string clip;
-  core::Found found;  ///< LongRun, SlowFrames, FallAboveGravity or FallsSlowly
+  core::Found found;         ///< LongRun, SlowFrames, FallAboveGravity or FallsSlowly
+  bool weight_open = false;  ///< of FallsSlowly: what drives the fall is fitted (open_weight())
 };
 
 /// A stated inclination that the motion contradicts.

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "core/check/motion_look.h"
+#include "core/result/image_record.h"
 
 namespace glidelab::diagnose {
 
@@ -27,6 +28,15 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
   std::vector<DoubtfulUnit> doubtful;
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];
+    if (clip.images && clip.images->combs > core::kInterlacedShare) {
+      issues.push_back(
+          {setups[c].file.string(), 0, fmt::format("clip \"{}\"", clip.name),
+           "an interlaced film: the odd rows of a frame were seen half a frame earlier or later than the "
+           "even ones",
+           fmt::format("a film with its fields separated (ffmpeg -vf bwdif) and frame_rate_hz = {:.6g}, or "
+                       "one without interlacing",
+                       2.0 * clip.frame_rate_hz)});
+    }
     for (const core::Finding& finding :
          core::motion_findings(core::look_at_motion(clip), setups[c], results.gravity_m_s2)) {
       if (is_of_units(finding.found)) doubtful.push_back({clip.name, finding.found});

@@ -117,7 +117,7 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
 }
 
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
-  constexpr double kByChance = 0.05;  // that sizes which are all 0 are together so far from it
+  constexpr double kByChance = 0.01;  // that sizes which are all 0 are together so far from it
   const SizeUncertainty uncertainty(set, fit);
   const auto& globals = fit.layout->globals();
   return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {

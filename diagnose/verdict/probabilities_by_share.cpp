@@ -59,7 +59,7 @@ bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, cons
          sequence.gap_before * sequence.gap_before - 1.0 < 1.0;
 }
 
-void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
+void move_to_none(const std::function<bool(const Hypothesis&)>& of, Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || one.effects.empty() || !of(one)) continue;
     comparison.none += one.probability;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "diagnose/causes/cause_sequence.h"
@@ -29,7 +30,7 @@ bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
 bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison);
 
 /// Moves the probability of the explanations for which `of` holds to `none`: what they would explain needs no cause.
-void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);
+void move_to_none(const std::function<bool(const Hypothesis&)>& of, Comparison& comparison);
 
 /// For a fall through air whose positions are rounded as finely as the nominal model follows them: nothing finer than
 /// the step is claimed, and that something brakes in proportion to the square of the speed is known without them. The

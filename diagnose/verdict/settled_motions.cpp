@@ -198,11 +198,24 @@ void note_loss(const ImageEvidence& images, TrackSet& set) {
   }
 }
 
+/// Falls that all begin far too slowly (core::slow_fall()) are driven by an unknown part of their weight, as in a
+/// liquid: by 0 to four times gravity, at a standard deviation of gravity itself. Whether that is so.
+bool open_weight(const core::AnalysisResults& results, TrackSet& set) {
+  const bool slow = !results.configurations.empty() &&
+                    std::ranges::all_of(results.configurations, [&](const core::ConfigurationResult& configuration) {
+                      return core::slow_fall(configuration, results.gravity_m_s2).has_value();
+                    });
+  if (slow) set.gravity_sd_m_s2 = set.gravity_m_s2;
+  return slow;
+}
+
 }  // namespace
 
 TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups) {
   std::vector<DoubtfulUnit> doubtful = doubtful_units(results, setups);
   TrackSet set = track_set(results, setups, true);
+  const bool weight_open = open_weight(results, set);
+  for (DoubtfulUnit& one : doubtful) one.weight_open = weight_open;
   set.notes.insert(set.notes.end(), std::make_move_iterator(doubtful.begin()), std::make_move_iterator(doubtful.end()));
   check(setups, set);
   note_limits(setups, set);
@@ -215,6 +228,7 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed) {
   TrackSet set = track_set(results, setups, false);
   if (points_of(set) < kFewestWithoutHand) return {};
+  open_weight(results, set);
   note_limits(setups, set);
   note_readings(results, set);
   cut_driven_motions(set, kFewestDrivenPoints);

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "base/long_work.h"
+#include "base/math/dense.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -48,10 +50,34 @@ std::map<std::size_t, double> probabilities_of_causes(const Comparison& comparis
 
 }  // namespace
 
-double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain) {
+double price_of_spread(const MotionFit& fit, std::size_t effect) {
+  if (effect_list()[effect].search != Search::spread || !fit.layout || !std::isfinite(fit.cost)) return 0.0;
+  CommonNormal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) all.add(project(motion));
+  const Eigen::MatrixXd covariance = inverse_normal(all.matrix);
+  const auto& globals = fit.layout->globals();
+  std::vector<Eigen::Index> sizes;
+  std::vector<double> units;
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].kind != ParameterLayout::Global::Kind::effect || globals[g].effect != effect) continue;
+    sizes.push_back(static_cast<Eigen::Index>(g));
+    units.push_back(globals[g].parameter->held_sd);
+  }
+  const auto unit = Eigen::Map<const Eigen::VectorXd>(units.data(), std::ssize(units));
+  const Eigen::VectorXd found = fit.at.global(sizes).cwiseQuotient(unit);
+  // In units of the prior, whose own information is 1.
+  Eigen::MatrixXd products = base::inverse_positive(
+      Eigen::MatrixXd(unit.cwiseInverse().asDiagonal() * covariance(sizes, sizes) * unit.cwiseInverse().asDiagonal()));
+  products.diagonal().array() -= 1.0;
+  const SpreadEvidence evidence = log_spread_evidence(products, base::product(products, found));
+  return std::min(0.0, evidence.log_evidence - evidence.free_gain);
+}
+
+double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const MotionFit& fit) {
+  const double gain = 0.5 * (base.cost - fit.cost);
   const bool in_place_of_k = takes_place_of_drag(set, base.effects, scan.effect);
   if (!std::isfinite(gain)) return in_place_of_k ? -kNoFit : std::min(0.0, scan.log_evidence - scan.gain);
-  return in_place_of_k ? gain : scan.log_evidence - scan.gain + gain;
+  return in_place_of_k ? gain : gain + std::min(scan.log_evidence - scan.gain, price_of_spread(fit, scan.effect));
 }
 
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
@@ -61,7 +87,7 @@ Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& sca
   found.hypothesis.effects = beside.effects;  // missing frames are in the fit's times, not among its effects
   found.hypothesis.effects.push_back(scan.effect);
   found.hypothesis.gain = beside.gain + gain;
-  found.hypothesis.log_evidence = beside.log_evidence + log_evidence_beyond(set, base, scan, gain);
+  found.hypothesis.log_evidence = beside.log_evidence + log_evidence_beyond(set, base, scan, found.fit);
   return found;
 }
 

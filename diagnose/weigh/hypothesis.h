@@ -67,10 +67,15 @@ struct Found {
   MotionFit fit;
 };
 
-/// The log evidence of one more effect than a fit has, which gains this much log likelihood in full: that of the scan
-/// with the gain of the full fit in place of the linear one. A quadratic drag that takes the place of K is not charged
-/// for its size, as K is not.
-double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain);
+/// What averaging the sizes of a spread over their prior costs at a fit that has them, as a log likelihood; never above
+/// 0, and 0 for other effects. Around a fit without it a spread of friction can cost next to nothing, because it shows
+/// nothing there: its derivatives are in proportion to mu.
+double price_of_spread(const MotionFit& fit, std::size_t effect);
+
+/// The log evidence of one more effect than the fit `base` has, from the full fit with it: the gain in log likelihood
+/// less what the scan around `base` charges for the sizes, or, if that is more, price_of_spread(). A quadratic drag
+/// that takes the place of K is not charged for its size, as K is not.
+double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const MotionFit& fit);
 
 /// The full fit of one more effect, and its evidence.
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside);

@@ -54,7 +54,8 @@ Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan&
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
-  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, gain);
+  found.hypothesis.log_evidence =
+      leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, found.fit);
   return found;
 }
 
@@ -106,7 +107,8 @@ std::optional<Found> turned(const TrackSet& set, const MotionFit& both, Comparis
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = {both.effects.back(), both.effects.front()};
   found.hypothesis.gain = leader.hypothesis.gain + gain;
-  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, gain);
+  found.hypothesis.log_evidence =
+      leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, found.fit);
   return found;
 }
 

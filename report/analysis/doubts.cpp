@@ -128,10 +128,13 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
                     configuration_name(results, c), base::number_text(*c.scatter, 2)));
   }
   if (!doubts.empty()) {
-    doubts.push_back(
-        "The law (drag proportional to the speed, dry friction, gravity) does not fit these clips as they "
-        "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
-        "from the law?).");
+    const bool of_speeds = std::ranges::any_of(
+        results.clips, [](const core::ClipResult& clip) { return clip.speed_noise_m_s.has_value(); });
+    doubts.push_back(fmt::format(
+        "The law (drag proportional to the speed, dry friction, gravity) does not fit these clips as they are. {}",
+        of_speeds ? "What is missing shows in positions: glidelab diagnose takes no speeds alone."
+                  : "Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
+                    "from the law?)."));
   }
   return doubts;
 }

@@ -80,7 +80,7 @@ struct AnalysisSentence {
     return fmt::format(
         "the path makes an angle of {0:.1f}° with the {1} axis; positions are taken along the path, from x and y, and "
         "distances are {2:.3g} times those along {1}. If the axes are level, this is the inclination (--incline "
-        "{3:.1f})",
+        "{3:.1f}, or -{3:.1f} where x increases uphill)",
         of.off_deg, of.along_y ? "y" : "x", of.stretch, of.along_y ? 90.0 - of.off_deg : of.off_deg);
   }
   std::string operator()(const core::CountedAlongMotion&) const {

@@ -25,6 +25,14 @@ std::string percent_text(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
+/// To the millisecond, however late it is.
+std::string instant_text(double t_s) {
+  std::string text = fmt::format("{:.3f}", t_s);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 /// At most six names, and how many more there are.
 std::string first_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
@@ -211,6 +219,14 @@ struct FindingSentence {
             "record or export at a higher bit rate, or without loss"};
   }
 
+  FindingWords operator()(const found::Interlaced& of) const {
+    return {
+        "the film is interlaced: in each frame the odd rows were seen half a frame earlier or later than the even "
+        "ones, and what moves has edges like combs",
+        fmt::format("separate the fields (ffmpeg -vf bwdif, or separatefields) and state frame_rate_hz = {:.6g}, or "
+                    "film without interlacing",
+                    2.0 * of.frame_rate_hz)};
+  }
   FindingWords operator()(const found::OtherRateInFile& of) const {
     return {fmt::format("the file states {:.6g} frames per second, experiment.toml {:.6g}", of.file_hz, of.stated_hz),
             fmt::format("check that the clip was filmed at {:.6g} frames per second: a wrong rate scales every speed{}",
@@ -353,12 +369,13 @@ struct FindingSentence {
   }
   FindingWords operator()(const found::LongRun& of) const {
     return {fmt::format("x covers {:.3g} m", of.distance_m),
-            "check the unit of x: it may be centimetres, millimetres, or an angle"};
+            "check the unit of x: it may be centimetres, millimetres, an angle, or a speed"};
   }
   FindingWords operator()(const found::Pushed& of) const {
-    return {fmt::format("until {:.3g} s it speeds up by up to {:.2g} m/s², more than any incline gives: it is pushed",
-                        of.until_s, of.acceleration_m_s2),
-            fmt::format("use the part that is free: start_s = {:.3g}, or leave out the rows before", of.until_s)};
+    return {
+        fmt::format("until {} s it speeds up by up to {:.2g} m/s², more than any incline gives: it is pushed",
+                    instant_text(of.until_s), of.acceleration_m_s2),
+        fmt::format("use the part that is free: start_s = {}, or leave out the rows before", instant_text(of.until_s))};
   }
   FindingWords operator()(const found::SlowFrames& of) const {
     return {fmt::format("its positions are {:.3g} s apart", of.apart_s),
@@ -377,9 +394,9 @@ struct FindingSentence {
                              : of.count == 2 ? ", and once more later"
                                              : fmt::format(", and {} times more later", of.count - 1);
     return {
-        fmt::format("from {:.3g} s to {:.3g} s it does not move as before and after{}: a blow, a stop, a hand, or a "
-                    "force that acts only there",
-                    of.from_s, of.to_s, more),
+        fmt::format("from {} s to {} s it does not move as before and after{}: a blow, a stop, a hand, or a force that "
+                    "acts only there",
+                    instant_text(of.from_s), instant_text(of.to_s), more),
         "let it run freely, or make each free run a clip of its own, with start_s and end_s"};
   }
   FindingWords operator()(const found::Smoothed& of) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
@@ -39,9 +40,12 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict == diagnose::Verdict::effect) {
     for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+      constexpr std::size_t kMostOnTile = 3;
+      const std::size_t named = effect.alike.size() > kMostOnTile + 1 ? kMostOnTile : effect.alike.size();
       std::string names;
-      for (const diagnose::AlikeEffect& one : effect.alike)
+      for (const diagnose::AlikeEffect& one : std::span(effect.alike).first(named))
         names += (names.empty() ? "one of: " : ", ") + effect_name(one.id);
+      if (named < effect.alike.size()) names += fmt::format(" and {} others", effect.alike.size() - named);
       text += tile(probability_text(effect.joint_probability),
                    (names.empty() ? effect_name(effect.id) : names) + beside_others(diagnosis, effect));
     }

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"
@@ -278,6 +280,29 @@ std::string how_judged(const Requirement& requirement) {
              validate::kRunsForQuantile, validate::kResamples);
 }
 
+constexpr std::size_t kNameWidth = 31, kCostWidth = 13;  // characters, so that the table fits a terminal
+
+/// Its beginning, up to a comma, or else a blank, where it is longer.
+std::string cut_short(const std::string& text, std::size_t width) {
+  if (text.size() <= width) return text;
+  const std::string_view first = std::string_view(text).substr(0, base::first_bytes(text, width + 1).size());
+  const std::size_t comma = first.rfind(','), blank = first.rfind(' ');
+  const std::size_t end = comma != std::string_view::npos ? comma : blank;
+  return std::string(first.substr(0, end == std::string_view::npos ? width : end));
+}
+
+/// As many characters of each name as a terminal has room for; whole names where two would then be the same.
+std::vector<std::string> short_names(const Requirement& requirement) {
+  std::vector<std::string> names, whole;
+  for (const Candidate& candidate : requirement.candidates) {
+    whole.push_back(candidate.name);
+    names.push_back(cut_short(candidate.name, kNameWidth));
+  }
+  std::vector<std::string> sorted = names;
+  std::ranges::sort(sorted);
+  return std::ranges::adjacent_find(sorted) == sorted.end() ? names : whole;
+}
+
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
@@ -298,20 +323,19 @@ std::string requirement_text(const Requirement& requirement) {
   const bool judge_column = common_judge(requirement).empty();
   std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict"}};
   if (judge_column) rows.front().emplace_back("judged by");
-  rows.front().insert(rows.front().end(), {"frames/s", "noise (µm)"});
   for (const Target& target : requirement.targets) {
     rows.front().push_back(target_name(target, scale_of(target).factor));
-    rows.front().push_back("at most");
-    rows.front().push_back("bound" + same_unit(target));
-    rows.front().push_back("runs beyond");
   }
+  const std::vector<std::string> names = short_names(requirement);
   std::string below, unanswered;
-  for (const Candidate& candidate : requirement.candidates) {
-    std::vector<std::string>& row = rows.emplace_back(
-        std::vector<std::string>{candidate.name, cost_text(requirement, candidate), candidate_verdict(candidate)});
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{
+        names[i], cut_short(cost_text(requirement, candidate), kCostWidth), candidate_verdict(candidate)});
     if (judge_column) row.push_back(judging_estimators(candidate));
-    row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
-    for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
+    for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+      row.push_back(found_text(candidate.results[t], scale_of(requirement.targets[t]).size));
+    }
     if (const std::string words = unanswered_words(requirement, candidate); !words.empty()) {
       unanswered += fmt::format("{}: {}\n", candidate.name, words);
     }

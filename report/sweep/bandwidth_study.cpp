@@ -333,14 +333,19 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   }
   if (bound > 0.0) {
     data.push_back(level("bound", bound, from, to));
-    drawn += fmt::format(", $bound using 1:2 with lines lw 1.2 dt 4 lc rgb '{}' title 'limit (Cramér-Rao)'", color(6));
+    drawn += fmt::format(
+        ", $bound using 1:2 with lines lw 1.2 dt 4 lc rgb '{}' title 'limit of one configuration (Cramér-Rao)'",
+        color(6));
   }
   script += error_range(data);
   if (!choice.rows.empty()) data.push_back(choice);
   return {Drawing{script + drawn, data, {480, 400}},
           fmt::format("Error of {} against the bandwidth. Total² is noise² + bias²; a dot on its line marks a bias of "
-                      "more than two standard errors",
-                      symbol_of(quantity.key)),
+                      "more than two standard errors{}",
+                      symbol_of(quantity.key),
+                      bound > 0.0 ? ". The limit is that of clips of one configuration; the fit of the whole motion "
+                                    "uses all together and may have smaller errors"
+                                  : ""),
           fmt::format("Error of {} against the bandwidth", symbol_of(quantity.key))};
 }
 

@@ -102,6 +102,15 @@ SceneWatch::Pixels SceneWatch::cut(const cv::Mat& grey) const {
   return pixels;
 }
 
+SceneWatch::Terms SceneWatch::derivatives_at(const Patch& patch, std::size_t pixel) {
+  const double row = static_cast<double>(pixel / kPatchSide);
+  const double z = (2.0 * row + 1.0) / kPatchSide - 1.0;
+  // Less its mean, so that the gain is that of the whole patch.
+  constexpr double kMeanSquare = 1.0 / 3.0;
+  return {patch.reference[pixel], -patch.gu[pixel], -patch.gv[pixel], z * patch.reference[pixel],
+          (z * z - kMeanSquare) * patch.reference[pixel]};
+}
+
 /// Moves a patch's reference to the present position of the scene in the image.
 void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   cv::Mat_<float> whole = patch.around.clone();
@@ -122,17 +131,16 @@ void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   patch.reference = flat(whole);
   patch.gu = flat(gu);
   patch.gv = flat(gv);
-  cv::Matx33d normal = cv::Matx33d::zeros();
+  Normal normal = Normal::zeros();
   for (std::size_t i = 0; i < patch.reference.size(); ++i) {
-    const cv::Vec3d row(patch.reference[i], -patch.gu[i], -patch.gv[i]);
+    const Terms row = derivatives_at(patch, i);
     normal += row * row.t();
   }
   // A patch without any structure has no shift; the ridge is far below one code's worth of gradient.
-  for (int k = 0; k < 3; ++k) normal(k, k) += 1e-3;
+  for (int k = 0; k < kTerms; ++k) normal(k, k) += 1e-3;
   patch.inverse = normal.inv();
-  const cv::Vec2d cross(normal(0, 1), normal(0, 2));
   patch.structure =
-      cv::Matx22d(normal(1, 1), normal(1, 2), normal(2, 1), normal(2, 2)) - cross * cross.t() * (1.0 / normal(0, 0));
+      cv::Matx22d(patch.inverse(1, 1), patch.inverse(1, 2), patch.inverse(2, 1), patch.inverse(2, 2)).inv();
   patch.gain_variance = patch.inverse(0, 0);
 }
 
@@ -186,6 +194,7 @@ void SceneWatch::add(const cv::Mat& grey, double t_s) {
     choose(grey);
   }
   steps_.add(grey);
+  combs_.add(grey, added_++);
   if (patches_.empty()) return;
   if (ready_) return look(grey, t_s);
   early_.push_back(grey.clone());
@@ -209,6 +218,7 @@ PixelChanges SceneWatch::changes_by_level() const {
 void SceneWatch::finish(ImageRecord& record) {
   record.scene = std::move(looks_);
   record.steps = steps_.finish();
+  record.combs = combs_.share();
   if (!lossy_ && through_lossy_codec(record)) allow_for_codec(record.scene);
   if (changes_ == 0) return;
   record.noise_code = std::sqrt(0.5 * change_one_ / static_cast<double>(changes_)) / kPatchSofter;
@@ -220,22 +230,22 @@ void SceneWatch::finish(ImageRecord& record) {
 }
 
 // What follows compares a frame with the references.
-/// Gain and shift of a patch that nothing passes through; the residuals stay in the patch.
+/// Gains and shift of a patch that nothing passes through; the residuals stay in the patch.
 std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::vector<float>& pixels) const {
   const std::size_t n = patch.reference.size();
   std::swap(patch.before_that, patch.before);
   std::swap(patch.before, patch.residual);
   patch.residual.assign(n, 0.0F);
   if (pixels.empty()) return std::nullopt;
-  cv::Vec3d right(0.0, 0.0, 0.0);
+  Terms right = Terms::all(0.0);
   for (std::size_t i = 0; i < n; ++i) {
     const double off = pixels[i] - patch.reference[i];
-    right += off * cv::Vec3d(patch.reference[i], -patch.gu[i], -patch.gv[i]);
+    right += off * derivatives_at(patch, i);
   }
-  const cv::Vec3d by = patch.inverse * right;
+  const Terms by = patch.inverse * right;
   double rest = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double model = by[0] * patch.reference[i] - by[1] * patch.gu[i] - by[2] * patch.gv[i];
+    const double model = by.dot(derivatives_at(patch, i));
     patch.residual[i] = static_cast<float>(pixels[i] - patch.reference[i] - model);
     rest += patch.residual[i] * patch.residual[i];
   }

@@ -2,9 +2,10 @@
 ///
 /// Some patches of 24 x 24 pixels are chosen in the first frame, those with most structure and some spread over the
 /// image. In each frame a patch, blurred by 1 px, is compared with its mean R over the first frames, to first order
-/// in a shift d and a gain a,
+/// in a shift d and a gain that changes from row to row (z = -1 to 1), for a rolling shutter sees light that flickers
+/// as bands,
 ///
-///     I = (1 + a) R - d . grad R,
+///     I = (1 + a + b z + c z²) R - d . grad R,
 ///
 /// by least squares, with R shifted (cubic interpolation) by the last frame's shift. Patches through which something
 /// passes (residuals three times the usual ones, or a shift that differs from the others') are not counted in that
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "core/pictures/scene/camera_traces.h"
+#include "core/pictures/scene/interlacing.h"
 #include "core/result/image_record.h"
 
 namespace glidelab::core {
@@ -41,12 +43,15 @@ class SceneWatch {
   void finish(ImageRecord& record);
 
  private:
+  static constexpr int kTerms = 5;
+  using Terms = cv::Vec<double, kTerms>;
+  using Normal = cv::Matx<double, kTerms, kTerms>;
   struct Patch {
     cv::Rect place;
     cv::Mat_<float> around;  ///< the mean of the first frames, with a margin for shifts
     std::vector<float> reference, gu, gv;
-    cv::Matx33d inverse;         ///< of the normal matrix of (gain, shift)
-    cv::Matx22d structure;       ///< of the shift, the gain projected out
+    Normal inverse;              ///< of the normal matrix of (gain, shift, gain from row to row)
+    cv::Matx22d structure;       ///< of the shift, the gains projected out
     double gain_variance = 0.0;  ///< of the gain for a pixel's variance of 1
     double usual_rms = 0.0;
     std::vector<float> residual, before, before_that;  ///< of the last three frames
@@ -57,8 +62,8 @@ class SceneWatch {
   /// A patch that counts in a frame.
   struct Moved {
     Patch* patch;
-    cv::Vec3d by;  ///< gain, and shift (px) from where the reference stands
-    double rest;   ///< mean square of what is left over
+    Terms by;     ///< gain, shift (px) from where the reference stands, gain from row to row
+    double rest;  ///< mean square of what is left over
   };
   using Pixels = std::vector<std::vector<float>>;  ///< of each patch
 
@@ -66,6 +71,8 @@ class SceneWatch {
   Pixels cut(const cv::Mat& grey) const;
   void make_reference();
   static void shift_reference(Patch& patch, cv::Point2d shift);
+  /// Of a pixel with the terms of Moved::by.
+  static Terms derivatives_at(const Patch& patch, std::size_t pixel);
   SceneLook compare(const Pixels& pixels);
   std::optional<Moved> fit_patch(Patch& patch, const std::vector<float>& pixels) const;
   static void drop_odd(std::vector<Moved>& found, double variance);
@@ -86,6 +93,8 @@ class SceneWatch {
   std::vector<SceneLook> looks_;
   std::vector<double> variances_;  ///< of a pixel, that the looks' errors come from
   BlockStepSums steps_;
+  CombWatch combs_;
+  std::size_t added_ = 0;
   double change_one_ = 0.0, change_two_ = 0.0;
   std::size_t changes_ = 0;
 };

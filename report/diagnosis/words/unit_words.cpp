@@ -13,10 +13,12 @@ std::string first_to_check(const diagnose::DoubtfulUnit& of) {
   const FindingWords words = finding_words(of.found);
   if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
     return fmt::format(
-        "First find out why it falls so slowly ({}: {}). If it was at its final speed from the start, terminal "
-        "velocities hold. If a liquid bears part of its weight, they hold as well, and drags are too large by the "
-        "ratio of its weight to that in the liquid. Otherwise nothing below holds.",
-        of.clip, words.found);
+        "First find out why it falls so slowly ({}: {}). {} Otherwise nothing below holds.", of.clip, words.found,
+        of.weight_open
+            ? "The force that drives it is therefore fitted. If it was at its final speed from the start, terminal "
+              "velocities hold; if a liquid bears part of its weight, K/m holds as well."
+            : "If it was at its final speed from the start, terminal velocities hold. If a liquid bears part of its "
+              "weight, they hold as well, and drags are too large by the ratio of its weight to that in the liquid.");
   }
   const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
   return fmt::format("First {} ({}: {}). {}.", words.advice, of.clip, words.found,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
@@ -41,12 +42,15 @@ std::string claim(const diagnose::DiagnosedEffect& effect) {
     return fmt::format("{} ({}, {}; {} together with what these data cannot distinguish from it)", effect.words,
                        effect.id, percent(effect.probability), percent(effect.joint_probability));
   }
+  constexpr std::size_t kMostMembers = 5;  // more are a list that nobody reads
+  const std::size_t named = alike.size() > kMostMembers + 1 ? kMostMembers : alike.size();
   std::vector<std::string> members;
-  for (const diagnose::AlikeEffect& one : alike) {
+  for (const diagnose::AlikeEffect& one : std::span(alike).first(named)) {
     members.push_back(one.probability ? fmt::format("{} ({}, {})", one.words, one.id, percent(*one.probability))
                                       : fmt::format("{} ({})", one.words, one.id));
   }
-  return fmt::format("one of these {} ({} together), but cannot tell which: {}", count_in_words(members.size()),
+  if (named < alike.size()) members.push_back(fmt::format("one of {} others", count_in_words(alike.size() - named)));
+  return fmt::format("one of these {} ({} together), but cannot tell which: {}", count_in_words(alike.size()),
                      percent(effect.joint_probability), list_of(members, ", or "));
 }
 

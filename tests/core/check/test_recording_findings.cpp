@@ -110,6 +110,33 @@ TEST_CASE("a clip whose images show a codec's blocks has too low a bit rate") {
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == core::Severity::change);
   CHECK(found_as<core::found::StrongCompression>(findings[0]).block_steps == 0.7);
+  clip.frames_alone = true;  // whose errors do not last
+  CHECK(of_clip(clip).empty());
+  clip.block_steps = 2.5;
+  CHECK(of_clip(clip).size() == 1);
+}
+
+TEST_CASE("a clip that the analysis leaves out is unusable, with its own reason alone") {
+  core::ClipCheck clip = fine_clip();
+  clip.block_steps = 0.7;
+  clip.notes.push_back(core::NotOfStatedSize{"found two markers that look and move alike"});
+  const auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::unusable);
+  CHECK_THAT(found_as<core::found::NotTracked>(findings[0]).failure, Catch::Matchers::Contains("two markers"));
+  clip.marker_px = 3.0 * clip.marker_expected_px;  // the stated diameter may be the cause
+  CHECK(of_clip(clip).size() > 1);
+}
+
+TEST_CASE("an interlaced film is unusable as it is") {
+  core::ClipCheck clip = fine_clip();
+  clip.combs = 0.03;
+  CHECK(of_clip(clip).empty());
+  clip.combs = 0.3;
+  const auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::unusable);
+  CHECK(found_as<core::found::Interlaced>(findings[0]).frame_rate_hz == clip.frame_rate_hz);
 }
 
 TEST_CASE("an image counts as dark only if its marker is dark too, however small") {

@@ -211,6 +211,23 @@ TEST_CASE("a marker of another size than stated is one finding for all clips, an
   CHECK(of_sizes({smeared})[0].severity == core::Severity::change);
 }
 
+TEST_CASE("the size of a saturated marker, and of one that is no disc, is no measure of the scale to 15 %") {
+  // A square of 10 px has the area of a disc of 11.3 px, and its corners lie 14.1 px apart.
+  core::ClipCheck square = sized("a", 14.1, 10.0);
+  CHECK_FALSE(of_sizes({square}).empty());
+  square.notes.push_back(core::MarkerMeasuredBy{core::MarkerMeasuredBy::What::centroid});
+  CHECK(of_sizes({square}).empty());
+  core::ClipCheck lamp = sized("a", 4.8, 6.24);
+  lamp.marker_level = 1.0;
+  CHECK(of_sizes({lamp}).empty());
+  lamp.marker_level = 0.8;
+  REQUIRE(of_sizes({lamp}).size() == 1);
+  // Lengths in the wrong unit are still found.
+  square.marker_px = 100.0;
+  REQUIRE(of_sizes({square}).size() == 1);
+  CHECK(of_sizes({square})[0].severity == core::Severity::unusable);
+}
+
 TEST_CASE("a fall in slow motion is found by the acceleration with which it begins") {
   // From rest with viscous drag, K/m = 2/s: x = v_t (t - (1 - exp(-2 t))/2), v_t = g/2. Times four times too long.
   const tests::TempDir dir;

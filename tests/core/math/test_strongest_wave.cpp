@@ -44,3 +44,17 @@ TEST_CASE("a wave between the frequencies of the search has its own frequency, t
   CHECK(chi2 < 2.0);
   CHECK(chi2 > 0.3);
 }
+
+TEST_CASE("near half the sampling rate a wave is as large as the samples show it, not as its sine would be") {
+  // Alternating values, as those of the predicted and the key frames of a codec, and a slow change of their size.
+  std::vector<core::Series> all(1);
+  for (int i = 0; i < 240; ++i) {
+    all[0].t_s.push_back(i / 60.0);
+    all[0].value.push_back(1.0 + (i % 2 == 0 ? 4e-4 : -4e-4) * (1.0 + 0.3 * std::sin(0.02 * i)));
+  }
+  const core::SeriesWave wave = core::strongest_wave(all);
+  CHECK(wave.f_hz > 29.5);
+  CHECK(wave.amplitude < 2.0 * 4e-4);
+  CHECK(wave.amplitude > 4e-4);
+  CHECK(core::amplitude_at(all[0], 29.9997).size < 2.0 * 4e-4);
+}

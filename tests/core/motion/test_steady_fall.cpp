@@ -92,6 +92,28 @@ TEST_CASE("clips that fall at different speeds give a wider terminal velocity") 
   CHECK(alike.v_lim_m_s.estimate->sd < 2e-3);
 }
 
+TEST_CASE("a bead in a liquid whose speed falls by a third is at no constant speed, however small its acceleration") {
+  // x' = 0.04 (1 + exp(-t)) m/s: a is 0.4 % of g at most.
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal(0.0, 1e-4);
+  ClipSetup setup;
+  setup.name = "bead";
+  setup.mass_kg = 1e-4;
+  setup.incline_rad = 0.5 * std::acos(-1.0);
+  TrackData track;
+  track.frame_rate_hz = 60.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t_s = i / 60.0;
+    track.frame.push_back(track.t_s.size());
+    track.t_s.push_back(t_s);
+    track.x_m.push_back(0.04 * (t_s + 1.0 - std::exp(-t_s)) + normal(random));
+  }
+  track.frame_t_s = track.t_s;
+  const AnalysisResults results = analyze_tracks({setup}, {track}, kGravity, {}, 1);
+  REQUIRE(results.configurations.size() == 1);
+  CHECK_FALSE(is_steady(results.configurations.front()));
+}
+
 TEST_CASE("a glider at a constant speed, and a fall that speeds up, have no such terminal velocity") {
   CHECK_FALSE(is_steady(analysed({.incline_deg = 4.0}, 1)));
   CHECK_FALSE(is_steady(analysed({.terminal_m_s = 20.0, .since_s = 0.0}, 1)));

@@ -29,5 +29,17 @@ TEST_CASE("an inclination near minus the stated one says that x is positive uphi
   CHECK_FALSE(core::seems_uphill(careless));
   core::InclineContradiction bound = between(4.0, -4.3);
   bound.bound = -1;
+  CHECK(core::seems_uphill(bound));
+  bound = between(29.0, -23.0);  // "at most -23": -29 is
+  bound.bound = -1;
+  CHECK(core::seems_uphill(bound));
+  bound = between(-29.0, 23.0);
+  bound.bound = 1;
+  CHECK(core::seems_uphill(bound));
+  bound = between(4.0, 1.0);
+  bound.bound = -1;
+  CHECK_FALSE(core::seems_uphill(bound));
+  bound = between(4.0, -20.0);
+  bound.bound = -1;
   CHECK_FALSE(core::seems_uphill(bound));
 }

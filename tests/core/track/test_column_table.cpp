@@ -57,6 +57,26 @@ TEST_CASE("labels and remarks in other columns than those of t and x are no reas
   check_motion(read_text("t (s),x (m),note\n" + rows("", [](int i) { return i == 0 ? ",starts" : ","; })));
 }
 
+TEST_CASE("marks without a letter in other columns are no reason to refuse a table either") {
+  for (const char* const mark : {" -", "--", "?", "*", ">", "100%", "5 %", "(3)", "#1", "$5", "1/2", "2024-01-05",
+                                 "18:09:55.601", "NA", "null"}) {
+    CAPTURE(mark);
+    check_motion(read_text("t (s),x (m),event\n" + rows("", [&](int) { return std::string(",") + mark; })));
+    check_motion(read_text("when;t (s);x (m)\n" + rows(
+                                                      std::string(mark) + ";", [](int) { return ""; }, ";")));
+  }
+}
+
+TEST_CASE("dashes and the words of programs for no value leave a gap, as NaN does") {
+  for (const char* const none : {"-", "--", "NA", "N/A", "null", "None", "#N/A", "#DIV/0!"}) {
+    CAPTURE(none);
+    const std::string text = "t (s),x (m)\n" + rows("", [](int) { return ""; }) + "0.600," + none + "\n0.650,0.36725\n";
+    const core::TrackData track = read_text(text);
+    CHECK(track.x_m.size() == kRows + 1);
+    CHECK(track.t_s.back() == Approx(0.65));
+  }
+}
+
 TEST_CASE("text among the times or the positions is refused with its line") {
   std::string text = "t (s),x (m),note\n" + rows("", [](int) { return ",ok"; });
   CHECK_THROWS_WITH(read_text(text + "0.600,lost,\n"),

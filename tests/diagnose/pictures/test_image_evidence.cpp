@@ -94,6 +94,21 @@ TEST_CASE("Exposure and line time come out of the marker's shape within their st
   CHECK(fit.line_sd_s < 2e-6);
 }
 
+TEST_CASE("an outline that is fitted with a fixed shape tells no exposure and no shutter", "[pictures]") {
+  std::vector<diagnose::FilmedClip> clips = filmed({0.003, 0.0, 0.0, 0.0}, 0.001, 1);
+  for (diagnose::FilmedClip& clip : clips) {
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
+    for (core::MarkerLook& look : record->marker) look.stretch_px2 = look.uv_px2 = 0.0;
+    clip.record = record;
+  }
+  CHECK_FALSE(diagnose::fit_marker_shape(clips).known);
+  for (const diagnose::ImageFinding& one : diagnose::image_evidence(clips).findings) {
+    CAPTURE(one.id);
+    CHECK(std::isfinite(one.log_evidence));
+    CHECK((one.id != "exposure_blur" && one.id != "rolling_shutter"));
+  }
+}
+
 TEST_CASE("compression has the name of the codec with loss that a file states, and else none", "[pictures]") {
   std::vector<diagnose::FilmedClip> clips = filmed({0.003, 0.0, 0.0, 0.0}, 0.003, 1);
   REQUIRE(clips.size() >= 2);
@@ -403,6 +418,26 @@ TEST_CASE("light along the path is that on the brighter of a marker and what is 
   }
   const diagnose::image::LightAlong light = light_of(diagnose::image_evidence(dark));
   CHECK(std::abs(light.gradient_1_m + 0.6) < 1e-6);  // exact data; the normal equations have a ridge of 1e-9
+}
+
+TEST_CASE("a marker that is paler where it is faster, as a long exposure makes it, shows no light along the path",
+          "[pictures]") {
+  std::vector<diagnose::FilmedClip> clips = filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4);
+  bool down = true;
+  for (diagnose::FilmedClip& clip : clips) {
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
+    for (core::MarkerLook& look : record->marker) {
+      const double speed_px_s = down ? 400.0 - 250.0 * look.t_s : 120.0 + 100.0 * look.t_s;
+      const double bright = 190.0 * std::exp(-0.8 * speed_px_s / 400.0);
+      look.amplitude = bright - look.background;
+    }
+    clip.record = record;
+    down = false;
+  }
+  const diagnose::ImageFinding light = finding(diagnose::image_evidence(clips), "light_gradient");
+  CHECK_FALSE(light.seen);
+  CHECK(std::abs(std::get<diagnose::image::LightAlong>(light.fact).gradient_1_m) < 0.05);
+  CHECK(finding(diagnose::image_evidence(with_gradient(clips, 1.5)), "light_gradient").seen);
 }
 
 TEST_CASE("a motion down the image tells exposure and light as the same motion across it does", "[pictures]") {

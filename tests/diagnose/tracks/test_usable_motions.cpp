@@ -2,13 +2,16 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <variant>
 
 #include "base/errors.h"
+#include "core/result/image_record.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -46,6 +49,25 @@ TEST_CASE("a diagnosis doubts the units and the scale that the check doubts, and
   const auto slow = doubts_of([](double t) { return t; }, 1.5);
   REQUIRE(slow.size() == 1);
   CHECK(std::holds_alternative<core::found::SlowFrames>(slow[0].found));
+}
+
+TEST_CASE("a diagnosis refuses an interlaced film, and says what to do") {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = 9.81;
+  core::ClipResult clip;
+  clip.name = "up";
+  clip.frame_rate_hz = 25.0;
+  core::ImageRecord record;
+  record.combs = 0.1;
+  clip.images = std::make_shared<core::ImageRecord>(record);
+  results.clips = {clip};
+  core::ClipSetup setup;
+  setup.file = "clips/up.mp4";
+  CHECK(diagnose::doubtful_units(results, {setup}).empty());
+  record.combs = 0.4;
+  results.clips[0].images = std::make_shared<core::ImageRecord>(record);
+  CHECK_THROWS_WITH(diagnose::doubtful_units(results, {setup}),
+                    Contains("clips/up.mp4") && Contains("an interlaced film") && Contains("frame_rate_hz = 50"));
 }
 
 TEST_CASE("a diagnosis says that a stated fall begins far below gravity, as the check does") {

@@ -67,6 +67,15 @@ TEST_CASE("a drag or a friction below zero by more than chance is doubted, by le
         std::string::npos);
 }
 
+TEST_CASE("of speeds alone the next step is no command that takes none") {
+  core::AnalysisResults results = one_clip();
+  results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.055);
+  CHECK(any_has(report::doubts_about(results), "glidelab check"));
+  results.clips[0].speed_noise_m_s = 0.01;
+  CHECK_FALSE(any_has(report::doubts_about(results), "glidelab check"));
+  CHECK(any_has(report::doubts_about(results), "takes no speeds alone"));
+}
+
 TEST_CASE("a clip that swings is doubted before anything else") {
   core::AnalysisResults results = one_clip();
   core::ClipResult& clip = results.clips[0];

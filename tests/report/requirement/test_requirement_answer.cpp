@@ -65,6 +65,21 @@ TEST_CASE("an estimator that judges every camera is named once, otherwise beside
   CHECK_THAT(report::requirement_text(requirement), !Contains("judged with"));
 }
 
+TEST_CASE("the table of cameras fits a terminal, with the beginnings of long names where these differ") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[0].name = "Industrial camera with IMX273, 1440x1080 at 227 fps (Basler class)";
+  requirement.candidates[1].name = "Raspberry Pi camera v1 (OV5647), 640x480 at 90 fps";
+  requirement.candidates[2].name = "Raspberry Pi Global Shutter camera, 1456x1088 at 60 fps";
+  requirement.candidates[2].price_class = "75-110 EUR with lens";
+  const std::string text = report::requirement_text(requirement);
+  const std::string table = text.substr(text.find("\ncamera "));
+  CHECK_THAT(table, Contains("\nIndustrial camera with IMX273  ") && Contains("\nRaspberry Pi camera v1 (OV5647)  ") &&
+                        Contains("\nRaspberry Pi Global Shutter  ") && Contains("  75-110 EUR  "));
+  CHECK(table.find("\n\n") > table.find("Global Shutter"));  // in one part
+  requirement.candidates[1].name = "Industrial camera with IMX273, 720x540 at 400 fps";
+  CHECK_THAT(report::requirement_text(requirement), Contains("IMX273, 720x540 at 400 fps"));
+}
+
 TEST_CASE("what is much better than needed is said to be so, with what would do") {
   validate::Requirement requirement = cameras();
   requirement.candidates[1].enough = validate::Enough{50.0, 11.25, 2.4e-4};

@@ -76,6 +76,34 @@ TEST_CASE("A scene at rest stays where it is while something dark passes before 
   }
 }
 
+TEST_CASE("Light that flickers before a rolling shutter moves no scene, however weak its structure", "[scene]") {
+  // A bench with light that falls off from the left, in bands of 11 % that run down the image; a row every 50 µs.
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.5);
+  core::SceneWatch watch;
+  for (int k = 0; k < 90; ++k) {
+    cv::Mat_<unsigned char> image(kHeight, kWidth);
+    for (int v = 0; v < kHeight; ++v) {
+      const double t = k / kRate_hz + 5e-5 * v;
+      const double light = 1.0 + 0.11 * std::cos(2.0 * std::numbers::pi * 120.0 * t);
+      for (int u = 0; u < kWidth; ++u) {
+        const double bench = 150.0 - 0.3 * u + 2.0 * std::sin(0.21 * u + 0.1 * v) + 2.0 * std::sin(0.17 * v);
+        image(v, u) = cv::saturate_cast<unsigned char>(light * bench + noise(random));
+      }
+    }
+    watch.add(image, k / kRate_hz);
+  }
+  core::ImageRecord record;
+  watch.finish(record);
+  REQUIRE(record.scene.size() == 90);
+  // A twelfth of a patch's rows sees 0.0006 s, 0.45 of a radian of the light: its cubic part over the patch is
+  // 0.11 * 0.45³/6 / 4 = 0.0004 of 100 codes, beside slopes of the scene of 0.4 codes a pixel.
+  for (const core::SceneLook& look : record.scene) {
+    CHECK(std::abs(look.u_px) < 5.0 * look.sd_u_px + 0.1);
+    CHECK(std::abs(look.v_px) < 5.0 * look.sd_v_px + 0.1);
+  }
+}
+
 TEST_CASE("The light's change is measured in each band of rows, whatever passes", "[scene]") {
   const auto light = [](double t) { return 1.0 + 0.02 * std::cos(2.0 * std::numbers::pi * 10.0 * t); };
   const core::ImageRecord record = watched({[](double) { return 0.0; }, light, true}, 100);

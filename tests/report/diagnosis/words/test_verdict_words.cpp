@@ -105,6 +105,12 @@ TEST_CASE("effects that look the same are named as one set, an effect that stand
       "The data show one of these three (98 % together), but cannot tell which: an uneven friction "
       "(direction_asymmetry, 49 %), a wrong length scale (scale_error, 30 %), or a wrong frame rate "
       "(frame_rate_error)."));
+  // Many that may be it are no list that anybody reads.
+  diagnose::Diagnosis many = of;
+  for (int k = 0; k < 6; ++k) many.effects.front().alike.push_back({"tether", "a cable", 0.01});
+  const std::string words = report::verdict_words(many);
+  CHECK(contains(words, "one of these nine (98 % together)"));
+  CHECK(contains(words, "a cable (tether, 1 %), or one of four others."));
   // Of 83 %, 82 % leave no doubt which.
   of.effects.front().probability = 0.82;
   of.effects.front().joint_probability = 0.83;
