@@ -27,18 +27,6 @@ std::vector<std::string> ids_of(const diagnose::Explanation& explanation) {
 
 }  // namespace
 
-std::string verdict_id(diagnose::Verdict verdict) {
-  switch (verdict) {
-    case diagnose::Verdict::none:
-      return "none";
-    case diagnose::Verdict::effect:
-      return "effect";
-    case diagnose::Verdict::unknown:
-      return "unknown";
-  }
-  return {};
-}
-
 std::string explanation_id(const diagnose::Explanation& explanation) {
   return diagnose::joined_ids(ids_of(explanation));
 }
