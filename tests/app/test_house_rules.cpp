@@ -141,12 +141,28 @@ std::vector<std::string> defined_elsewhere(const std::vector<Source>& sources) {
 
 /// The texts between quotes, without what is in comments or an include.
 std::vector<std::string> literals_of(const std::string& text) {
-  static const std::regex kPiece(
-      R"re(//[^\n]*|#include[^\n]*|R"(\w*)\([^]*?\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)')re");
   std::vector<std::string> found;
-  for (auto piece = std::sregex_iterator(text.begin(), text.end(), kPiece); piece != std::sregex_iterator(); ++piece) {
-    if ((*piece)[2].matched) found.push_back((*piece)[2]);
-    if ((*piece)[1].matched) found.push_back(piece->str());
+  std::size_t i = 0;
+  const auto is = [&](std::string_view what) { return std::string_view(text).substr(i).starts_with(what); };
+  while (i < text.size()) {
+    if (is("//") || is("#include")) {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (is("R\"")) {
+      const std::size_t open = text.find('(', i);
+      const std::string end = ")" + text.substr(i + 2, open - i - 2) + "\"";
+      const std::size_t close = text.find(end, open);
+      found.push_back(text.substr(open + 1, close - open - 1));
+      i = close + end.size();
+    } else if (is("\"")) {
+      const std::size_t open = i++;
+      while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+      found.push_back(text.substr(open + 1, i - open - 1));
+      ++i;
+    } else if (is("'\\")) {
+      i = text.find('\'', i + 3) + 1;
+    } else {
+      i += is("'") && i + 2 < text.size() && text[i + 2] == '\'' ? 3 : 1;
+    }
   }
   return found;
 }
