@@ -61,10 +61,8 @@ std::optional<double> gain_of_structure(const TrackSet& set, const MotionFit& cl
     for (std::size_t j = 0; j < of.clip.size(); ++j) {
       if (of.kind[i] != shared.kind || of.kind[j] != shared.kind) continue;
       const double along = (static_cast<double>(of.clip[i]) - mean) * (static_cast<double>(of.clip[j]) - mean);
-      const bool same = configuration.at(of.clip[i]) == configuration.at(of.clip[j]);
-      shared.shape(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = among.steadily ? along
-                                                                                 : same         ? 1.0
-                                                                                                : 0.0;
+      const double same = configuration.at(of.clip[i]) == configuration.at(of.clip[j]) ? 1.0 : 0.0;
+      shared.shape(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = among.steadily ? along : same;
     }
   }
   if (among.steadily) shared.shape *= count / shared.shape.trace();  // the width is that of one clip's size
