@@ -1,4 +1,4 @@
-/// Falls of which nobody says that they are.
+/// Clips that look like a fall though nobody states one.
 #pragma once
 
 #include <optional>

@@ -68,7 +68,7 @@ struct MarkerLighting {
   double pull_change_px = 0.0;
 };
 
-/// Brightness along the path, codes: of the marker, or, if that is dark, of what is around it.
+/// Brightness along the path, codes: of the marker, or, if that is dark, of its surroundings.
 struct PathBrightness {
   std::vector<LitPoint> points;  ///< none of a marker that is known by its hue
   bool of_marker = false;

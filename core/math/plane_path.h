@@ -1,5 +1,5 @@
-/// The positions in a plane at which a body was seen, first to last: in what direction their line lies, and how far
-/// they leave it.
+/// The positions in a plane at which a body was seen, first to last: the direction of their line, and how far they
+/// leave it.
 #pragma once
 
 #include <vector>

@@ -24,8 +24,8 @@ struct KnownVariance {
 };
 
 /// The value with a variance in two parts: one that is estimated, and one that is known, as that of a stated
-/// inclination or of the camera. The interval's half is the root of the sum of squares of what each part alone has;
-/// Student's t belongs to the first.
+/// inclination or of the camera. The half-width of the interval is the root of the sum of squares of those of
+/// either part alone; Student's t belongs to the first.
 Estimate estimate(double value, const KnownVariance& random, double known);
 
 /// The sum of two parts that count as independent (Welch 1947 and Satterthwaite 1946: the degrees that give it the

@@ -328,7 +328,7 @@ struct AnalysisResults {
   std::vector<LeftOutClip> left_out = {};                 ///< in order; `clips` has the others
 };
 
-/// What belongs to the clips of the results, of what belongs to the clips of all folders in order.
+/// The elements that belong to the clips of the results; `of_all` has one for each clip of all folders, in order.
 template <class T>
 std::vector<T> of_analysed(const AnalysisResults& results, std::vector<T> of_all) {
   for (auto clip = results.left_out.rbegin(); clip != results.left_out.rend(); ++clip)

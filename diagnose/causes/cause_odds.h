@@ -21,7 +21,7 @@
 ///
 /// In a fall through air the drag of air takes nearly all of the excess of a fall without drag, so that r would not
 /// tell what a further cause does. It counts in two steps there: the drag by what it leaves of a fall without drag, and
-/// the further causes by what they leave of what the drag alone leaves, each with the terms above.
+/// the further causes by how much of the drag's own remainder they leave, each with the terms above.
 ///
 /// A cause that is known by stated inclinations (Comparison::by_stated), such as a wrong scale, leaves the gap as it
 /// is. Only its evidence counts, and r is for what acts beside it.
@@ -31,8 +31,8 @@
 /// probability by their evidence.
 ///
 /// No data can tell a cause that is not on the list from one on the list that acts alike in them. The prior odds of
-/// something without a name are 0.2 to 0.5 for one or two named causes (hypotheses.cpp). If a fifth of what has no name
-/// imitates a named cause, 0.08 of the probability of every named cause belongs to something without a name.
+/// something without a name are 0.2 to 0.5 for one or two named causes (hypotheses.cpp). If a fifth of nameless causes
+/// imitate a named one, 0.08 of the probability of every named cause belongs to something without a name.
 #pragma once
 
 #include <optional>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 #include <vector>
 
 #include "diagnose/causes/spread_prior.h"
@@ -43,11 +42,10 @@ std::map<std::size_t, Configuration> configuration_of_clips(const TrackSet& set)
 std::optional<double> gain_of_structure(const TrackSet& set, const MotionFit& clips, const RemainderSizes& sizes,
                                         std::size_t effect) {
   constexpr std::size_t kFriction = 0, kDrag = 1;  // of clip_scatter's parameters
-  const bool drift = effect == effect_index(ids::friction_drift),
-             drag = effect == effect_index(ids::configuration_drag);
-  if (!drift && !drag && effect != effect_index(ids::configuration_friction)) return {};
+  const AmongClips& among = effect_list()[effect].among_clips;
+  if (among.of == AmongClips::Of::nothing) return {};
   const ClipSizes of = clip_sizes(clips);
-  SharedPart shared{drag ? kDrag : kFriction, {}};
+  SharedPart shared{among.of == AmongClips::Of::drag ? kDrag : kFriction, {}};
   const auto many = static_cast<Eigen::Index>(of.global.size());
   if (static_cast<std::size_t>(std::count(of.kind.begin(), of.kind.end(), shared.kind)) < kFewestSizes) return {};
   double mean = 0.0, count = 0.0;
@@ -63,11 +61,11 @@ std::optional<double> gain_of_structure(const TrackSet& set, const MotionFit& cl
     for (std::size_t j = 0; j < of.clip.size(); ++j) {
       if (of.kind[i] != shared.kind || of.kind[j] != shared.kind) continue;
       const double along = (static_cast<double>(of.clip[i]) - mean) * (static_cast<double>(of.clip[j]) - mean);
-      const bool same = configuration.at(of.clip[i]) == configuration.at(of.clip[j]);
-      shared.shape(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = drift ? along : same ? 1.0 : 0.0;
+      const double same = configuration.at(of.clip[i]) == configuration.at(of.clip[j]) ? 1.0 : 0.0;
+      shared.shape(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = among.steadily ? along : same;
     }
   }
-  if (drift) shared.shape *= count / shared.shape.trace();  // the width is that of one clip's size
+  if (among.steadily) shared.shape *= count / shared.shape.trace();  // the width is that of one clip's size
   const RemainderSpace::Solution solution = RemainderSpace(set, clips).solve(sizes);
   const Eigen::VectorXd at = (clips.at.global + solution.change)(of.global);
   const Eigen::MatrixXd covariance = solution.covariance(of.global, of.global);
@@ -75,10 +73,10 @@ std::optional<double> gain_of_structure(const TrackSet& set, const MotionFit& cl
 }
 
 bool follows_structure(const TrackSet& set, const MotionFit& clips) {
-  const auto effects = {ids::friction_drift, ids::configuration_friction, ids::configuration_drag};
-  return std::any_of(effects.begin(), effects.end(), [&](std::string_view id) {
-    return gain_of_structure(set, clips, {}, effect_index(id)).value_or(0.0) > 0.0;
-  });
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (gain_of_structure(set, clips, {}, e).value_or(0.0) > 0.0) return true;
+  }
+  return false;
 }
 
 }  // namespace glidelab::diagnose

@@ -24,9 +24,9 @@
 
 namespace glidelab::diagnose {
 
-/// The log of that factor for `effect`, one of friction_drift, configuration_friction and configuration_drag. `clips`
-/// is a fit with clip_scatter, linearised with the noise alone, and `sizes` is its remainder. Empty for another effect,
-/// and if the fit has not a size for each of three clips or more.
+/// The log of that factor for `effect`. `clips` is a fit with clip_scatter, linearised with the noise alone, and
+/// `sizes` is its remainder. Empty for an effect that the sizes of clips do not follow (AmongClips), and if the fit has
+/// not a size for each of three clips or more.
 std::optional<double> gain_of_structure(const TrackSet& set, const MotionFit& clips, const RemainderSizes& sizes,
                                         std::size_t effect);
 

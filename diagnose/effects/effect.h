@@ -187,6 +187,8 @@ class EffectTwin {
 enum class Reach {
   stated,     ///< nothing
   with_mass,  ///< `high` holds up to 1 kg and grows in proportion to a larger mass
+  inertia,    ///< as with_mass; in a fall, what a wheel or the air that moves along can weigh
+  per_clip,   ///< a relative change from each clip to the next, which takes at most all of it by the last clip
   places,     ///< the range of the positions
   bulge,    ///< `low` and `high`, or a shift of the ends of the range of positions by a quarter of their distance from
             ///< its middle
@@ -228,6 +230,7 @@ struct EffectParameter {
   Each each = Each::experiment;
   std::string_view each_key = {};  ///< for ShownAs::of_mu and of_drag: the key of single values; empty: not shown
   bool only_filmed = false;        ///< fitted to filmed motions only
+  bool open_ended = false;         ///< beyond some size no position tells how large it is: an end of the range is usual
   /// Standard deviation of a normal prior about 0, for parameters of which the data determine only combinations: the
   /// deviations of clips, configurations or places from a mean that is fitted too. 0: no prior.
   double held_sd = 0.0;
@@ -306,6 +309,43 @@ struct InImages {
   bool along_track = false;  ///< over rows if the track runs down the image
 };
 
+/// What an effect has to do with drag.
+enum class Drag {
+  none,
+  viscous,  ///< it changes the viscous drag K v, and needs one
+  of_air,   ///< a drag such as that of air at speed; all of these are one law with other constants
+};
+
+/// What an effect lets touch the glider besides the track and the air.
+enum class Touch {
+  nothing,
+  in_one_place,  ///< a bumper, a cable
+  hand,          ///< at the start of a clip
+};
+
+/// The effect that moves the body or its image in nearly the same way. Each of the two names the other, the size is the
+/// first parameter of both, and a place or a frequency the second (weigh/twin_fits.h).
+struct Mirror {
+  std::string_view id = {};                              ///< empty: none
+  double (*size)(double size, double second) = nullptr;  ///< the other's size for one of this; null: the same
+  double phase_rad = 0.0;                                ///< the other's phase less that of this; of waves
+  bool beyond_middle = false;                            ///< only for a place beyond the middle of the positions
+};
+
+/// What the sizes of single clips follow where the effect acts (causes/scatter_structure.h).
+struct AmongClips {
+  enum class Of { nothing, friction, drag };
+  Of of = Of::nothing;
+  bool steadily = false;  ///< they change steadily from clip to clip; otherwise each configuration has one
+};
+
+/// Of an effect that makes single positions scatter: the size's key in files, and the number of parameters that tell
+/// the scatter.
+struct PointScatter {
+  std::string_view key = {};
+  std::size_t parameters = 0;
+};
+
 /// What the prior odds of an effect depend on.
 struct Circumstances {
   std::size_t clips = 0;
@@ -325,6 +365,11 @@ struct EffectInfo {
   std::string_view meaning;  ///< what the symbols of its sizes mean; empty if its size is a word
   Search search;
   bool both_signs;
+  Drag drag;
+  Touch touch;
+  Mirror mirror;
+  AmongClips among_clips;
+  PointScatter point_scatter;
   /// Prior odds relative to another effect; 0 if such a recording cannot show this one at any size. Null: 1.
   double (*odds)(const Circumstances& of);
   /// Log of a further factor of these odds where explanations are weighed with a remainder. Below 0 for an effect that

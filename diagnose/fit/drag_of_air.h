@@ -1,4 +1,4 @@
-/// The drag of what falls through air.
+/// The drag on a body that falls through air.
 ///
 /// At the speeds of such falls (falls_through_air()) the drag of air grows with the square of the speed, and the
 /// viscous K is bounded by Stokes' law:

@@ -103,12 +103,13 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, c
   if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
   double heaviest_kg = 0.0;
   for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
-  if (parameter.reach == Reach::with_mass) range.high *= std::max(1.0, heaviest_kg);
-  if (parameter.reach == Reach::with_mass && set.mass_assumed && only_falls(set)) range.high *= kOfOneGram;
-  if (parameter.slot == slot_of(ids::friction_drift) && set.clips.size() > 1) {
+  const bool with_mass = parameter.reach == Reach::with_mass || parameter.reach == Reach::inertia;
+  if (with_mass) range.high *= std::max(1.0, heaviest_kg);
+  if (with_mass && set.mass_assumed && only_falls(set)) range.high *= kOfOneGram;
+  if (parameter.reach == Reach::per_clip && set.clips.size() > 1) {
     range.low = std::max(range.low, -1.0 / static_cast<double>(set.clips.size() - 1));  // the last clip has none
   }
-  if (parameter.slot == slot_of(ids::rotational_inertia) && only_falls(set)) {
+  if (parameter.reach == Reach::inertia && only_falls(set)) {
     const bool of_air = set.through_air && holds_drag(set, beside);
     range.high = of_air ? std::min(range.high, kMostAirAlong_masses * lightest_kg(set)) : kMostWheel * heaviest_kg;
   }

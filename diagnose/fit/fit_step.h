@@ -6,7 +6,7 @@
 #pragma once
 
 #include "diagnose/fit/fit_model.h"
-#include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/fit_result.h"
 #include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {

@@ -109,10 +109,10 @@ namespace {
 
 constexpr double kSpreadOfLogS = 0.3;  // standard deviation of ln(s_i) about ln(s), s_i of one motion
 
-// For such a codec, measured on fault-free clips whose truth is known (H.264 of crf 14 to 18, seeds 3000 to 8000,
-// tracked positions minus the true ones): the errors of neighbours correlate by 0.15 to 0.35, of every other frame by
-// 0.3 to 0.4, of the fourth by 0.1 to 0.3, of the eighth by 0 to 0.15. That is a lasting part, 0.8 of s, over some five
-// frames; clips differ by a factor of about 1.6. This is a prior: the positions themselves have the last word.
+// For such a codec, measured on fault-free clips whose truth is known (H.264 of crf 14 to 18, tracked positions minus
+// the true ones): the errors of neighbours correlate by 0.15 to 0.35, of every other frame by 0.3 to 0.4, of the fourth
+// by 0.1 to 0.3, of the eighth by 0 to 0.15. That is a lasting part, 0.8 of s, over some five frames; clips differ by a
+// factor of about 1.6. This is a prior: the positions themselves have the last word.
 constexpr double kLastingOverS = 0.8, kSpreadOfLogLasting = 0.5;  // expected value, and its spread
 
 }  // namespace

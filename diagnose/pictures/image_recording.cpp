@@ -43,7 +43,8 @@ void add_codec(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
     if (lossy_codec.empty() && clip.record->lossy.value_or(false)) lossy_codec = clip.record->codec;
   }
   const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const ImageFinding& other) {
-    return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInImages;
+    const std::optional<InImages>& shown = effect_of(other.id).in_images;
+    return shown && shown->over == GapVariable::time && other.log_evidence > kSeenInImages;
   });
   ImageFinding finding = finding_of(ids::compression);
   const double blocks =

@@ -27,7 +27,7 @@ struct ShapeFit {
   bool known = false;
   double exposure_s = 0.0, exposure_sd_s = 0.0;
   double line_s = 0.0, line_sd_s = 0.0;  ///< positive if the top row is first
-  /// T² of the lengthening up to half of the highest v², and of what it grows by beyond that.
+  /// T² of the lengthening up to half of the highest v², and of its further growth beyond that.
   struct SquaredExposure {
     double s2 = 0.0, sd_s2 = 0.0;
   };

@@ -4,6 +4,13 @@
 
 namespace glidelab::diagnose {
 
+std::optional<Verdict> verdict_of_id(std::string_view id) {
+  for (const Verdict verdict : {Verdict::none, Verdict::effect, Verdict::unknown}) {
+    if (verdict_id(verdict) == id) return verdict;
+  }
+  return {};
+}
+
 bool Explanation::holds(const std::string& id) const {
   return std::find(effects.begin(), effects.end(), id) != effects.end();
 }

@@ -12,7 +12,7 @@ namespace glidelab::diagnose {
 /// The values of the second parameter that are tried; one empty list for an effect without a second parameter.
 std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t effect);
 
-/// The square of what is left of a column in units of the noise; 0 if that is no more than rounding.
+/// The square of a column's remaining part, in units of the noise; 0 if that part is no more than rounding.
 double seen_square(const ScoreSpace& space, const ScoreColumn& column);
 
 /// Prior odds of an effect relative to another (EffectInfo::odds); 0 if this recording cannot show it.

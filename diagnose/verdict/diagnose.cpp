@@ -93,9 +93,7 @@ std::optional<SensorPositions> sensor_of(const core::AnalysisResults& results,
 const std::string* named_of_hand(const Diagnosis& diagnosis) {
   if (diagnosis.verdict != Verdict::effect) return nullptr;
   for (const DiagnosedEffect& effect : diagnosis.effects) {
-    for (const std::string_view id : {ids::end_stop, ids::tether, ids::late_release}) {
-      if (effect.id == id) return &effect.id;
-    }
+    if (effect_of(effect.id).touch != Touch::nothing) return &effect.id;
   }
   return nullptr;
 }

@@ -20,10 +20,10 @@ constexpr double kLikelyAmongEquals = 1.0 / 3.0;
 constexpr double kAboutAsLikely = 1.0 / 3.0;
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 
-/// Whether one of the two laws is the other with one parameter held: a quadratic drag is a power law of exponent 2.
+/// Whether both are one law with other constants: a quadratic drag is a power law of exponent 2.
 bool is_same_law(std::size_t one, std::size_t other) {
-  const std::set<std::size_t> drags = {effect_index(ids::quadratic_drag), effect_index(ids::power_law_drag)};
-  return one != other && drags.contains(one) && drags.contains(other);
+  const auto is_of_air = [](std::size_t e) { return effect_list()[e].drag == Drag::of_air; };
+  return one != other && is_of_air(one) && is_of_air(other);
 }
 
 /// The same without the other causes of the explanation, and only with those that no track can tell from it or that are

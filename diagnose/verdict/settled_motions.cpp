@@ -249,7 +249,7 @@ bool is_within(const TrackSet& trimmed, std::size_t clip, double t_s) {
 /// Whether an effect is a law that acts throughout, and neither lost frames nor something that is met in one place.
 bool acts_throughout(std::size_t effect) {
   return shows_in_motion(effect_list()[effect].search) && effect_list()[effect].search != Search::lines &&
-         !follows_each_clip(effect) && effect != effect_index(ids::end_stop) && effect != effect_index(ids::tether);
+         !follows_each_clip(effect) && effect_list()[effect].touch == Touch::nothing;
 }
 
 /// Whether a law explains the positions that `trimmed` lacks: of what the nominal model leaves of them, in chi², beyond
@@ -275,9 +275,8 @@ bool explains_by_law(const TrackSet& set, const MotionFit& nominal, const Motion
 
 bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed) {
   constexpr double kAboutAsFar = 2.0;
-  const bool acts = std::any_of(fit.effects.begin(), fit.effects.end(), [](std::size_t e) {
-    return e == effect_index(ids::end_stop) || e == effect_index(ids::tether);
-  });
+  const bool acts = std::any_of(fit.effects.begin(), fit.effects.end(),
+                                [](std::size_t e) { return effect_list()[e].touch == Touch::in_one_place; });
   const bool loses = std::any_of(fit.late.begin(), fit.late.end(), [](const std::vector<double>& motion) {
     return std::any_of(motion.begin(), motion.end(), [](double late) { return late != 0.0; });
   });

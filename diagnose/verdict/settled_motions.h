@@ -28,7 +28,7 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed);
 
 /// Whether a fit to `set` explains the frames that `trimmed` lacks, which look like a hand or a stop. Laws that act
-/// throughout do if they leave at most a tenth of what the nominal model leaves of them. An end stop, a cable or lost
+/// throughout do if they leave at most a tenth of the nominal model's chi² there. An end stop, a cable or lost
 /// frames do if held-out positions lie about as far off as without these frames. What is left is then something else,
 /// which acts throughout.
 bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed);

@@ -56,8 +56,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   for (const FrameEffect& frame : comparison.frames) {
     if (frame.effect != effect) continue;
     if (!parameters.empty()) continue;
-    parameters.push_back(
-        {effect_list()[effect].id == ids::timestamp_jitter ? "sd_s" : "fraction", frame.value, frame.sd});
+    parameters.push_back({std::string(effect_list()[effect].point_scatter.key), frame.value, frame.sd});
   }
   if (fitted == nullptr) return parameters;
   const MotionFit& fit = *fitted;
@@ -92,7 +91,7 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
       if (hypothesis.fit >= 0) count += missing_in(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]);
     }
     if (info.search == Search::images) ++count;
-    if (info.search == Search::noise) count += info.id == ids::heavy_tailed_noise ? 2 : 1;
+    count += info.point_scatter.parameters;
   }
   return count;
 }

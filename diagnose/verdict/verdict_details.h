@@ -44,8 +44,8 @@ std::vector<NegativeLoss> what_drives(const MotionFit& fit);
 /// its range. Empty if nothing does.
 std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit);
 
-/// Puts what drives the glider beside this remainder in place of what does by the noise alone: `recovered` counts the
-/// remainder too. `fit` is linearised with the noise alone.
+/// Replaces the negative drags and frictions that the noise alone gave by those beside this remainder, since
+/// `recovered` counts the remainder too. `fit` is linearised with the noise alone.
 void count_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes, Diagnosis& diagnosis);
 
 /// Limits that a reader must know before the verdict, for the fit on which it rests: a negative drag or friction,
@@ -62,8 +62,8 @@ VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit);
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis);
 
-/// The most that the nominal model lacks, noise included; the largest over all motions. A fit absorbs part of what
-/// acts, but a size far beyond these is inferred from what hardly shows.
+/// The most that the nominal model lacks, noise included; the largest over all motions. A fit absorbs part of an
+/// effect, but a size far beyond these is inferred from an effect that hardly shows.
 struct Lacking {
   double position_m = 0.0;         ///< |r|, r the residual of a position
   double force_n = 0.0;            ///< m |r''| + |K| |r'|, each at its largest

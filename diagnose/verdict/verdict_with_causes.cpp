@@ -306,14 +306,22 @@ bool VerdictWithCauses::lacks_size(std::size_t effect) const {
 }
 
 /// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
-/// with what acts beside it. Bumpers and cables do not count: nothing but air touches the body.
+/// with what acts beside it. Bumpers and cables do not count, since nothing but air touches the body, nor do other laws
+/// of the drag of air.
 bool VerdictWithCauses::viscous_leaves_less() const {
-  const std::size_t drag = effect_index(ids::quadratic_drag), power = effect_index(ids::power_law_drag);
-  const std::size_t bumper = effect_index(ids::end_stop), cable = effect_index(ids::tether);
+  const std::size_t drag = effect_index(ids::quadratic_drag);
+  const auto has_other_law = [&](const Hypothesis& one) {
+    return std::any_of(one.effects.begin(), one.effects.end(),
+                       [&](std::size_t e) { return e != drag && effect_list()[e].drag == Drag::of_air; });
+  };
+  const auto touches = [](const Hypothesis& one) {
+    return std::any_of(one.effects.begin(), one.effects.end(),
+                       [](std::size_t e) { return effect_list()[e].touch == Touch::in_one_place; });
+  };
   const Hypothesis *viscous = nullptr, *quadratic = nullptr;
   for (const Hypothesis& one : by().all) {
-    if (one.unnamed || one.fit < 0 || !one.converged || has(one, power)) continue;
-    if (!has(one, drag) && (has(one, bumper) || has(one, cable))) continue;
+    if (one.unnamed || one.fit < 0 || !one.converged || has_other_law(one)) continue;
+    if (!has(one, drag) && touches(one)) continue;
     const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
     if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
   }

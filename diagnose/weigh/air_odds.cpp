@@ -31,19 +31,16 @@ bool turns_a_wheel(const TrackSet& set, const MotionFit& fit) {
 }  // namespace
 
 double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
-  const auto has_law = [&](EffectSlot slot) {
-    return std::find(fit.effects.begin(), fit.effects.end(), slot.effect) != fit.effects.end();
+  const auto has_drag = [&](Drag drag) {
+    return std::any_of(fit.effects.begin(), fit.effects.end(),
+                       [&](std::size_t e) { return effect_list()[e].drag == drag; });
   };
   if (!set.through_air) return 0.0;
-  if (has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag)))
-    return turns_a_wheel(set, fit) ? std::log(kDragAndWheelOdds) : 0.0;
+  if (has_drag(Drag::of_air)) return turns_a_wheel(set, fit) ? std::log(kDragAndWheelOdds) : 0.0;
   // A drag of some other kind, or the air that moves along with what it does not brake.
-  for (const EffectSlot slot :
-       {slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient), slot_of(ids::configuration_drag),
-        slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
-    if (has_law(slot)) return std::log(kViscousOdds);
-  }
-  if (has_law(slot_of(ids::rotational_inertia)) && !turns_a_wheel(set, fit)) return std::log(kViscousOdds);
+  const bool adds_inertia =
+      std::find(fit.effects.begin(), fit.effects.end(), effect_index(ids::rotational_inertia)) != fit.effects.end();
+  if (has_drag(Drag::viscous) || (adds_inertia && !turns_a_wheel(set, fit))) return std::log(kViscousOdds);
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
   const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
   const double without =

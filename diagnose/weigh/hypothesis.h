@@ -108,7 +108,7 @@ bool has(const Hypothesis& hypothesis, std::size_t effect);
 /// without a name.
 double probability_of_any(const Comparison& comparison, const std::vector<std::size_t>& effects);
 
-/// Log of the prior odds of a hypothesis' effects, against as many others, and of what its fit holds (fit_odds.h).
+/// Log of the prior odds of a hypothesis' effects, against as many others, and of the sizes in its fit (fit_odds.h).
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis);
 
 /// Whether a quadratic drag and the inertia of air that moves along are among these effects. In a fall through air both

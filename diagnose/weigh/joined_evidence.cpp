@@ -130,8 +130,7 @@ void temper(const TrackSet& set, Comparison& comparison) {
 void join_images(const TrackSet& set, const ImageEvidence& images, const std::set<std::size_t>& without,
                  Comparison& comparison) {
   const std::size_t codec = effect_index(ids::compression), sway = effect_index(ids::camera_motion),
-                    jitter = effect_index(ids::timestamp_jitter), rows = effect_index(ids::rolling_shutter),
-                    tails = effect_index(ids::heavy_tailed_noise);
+                    rows = effect_index(ids::rolling_shutter), tails = effect_index(ids::heavy_tailed_noise);
   std::vector<const ImageFinding*> findings;
   for (const ImageFinding& finding : images.findings) {
     if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
@@ -167,7 +166,7 @@ void join_images(const TrackSet& set, const ImageEvidence& images, const std::se
                                      [&](const Hypothesis& h) { return same_effects(h, with); });
       if (known) continue;
       double of_tracks = 0.0, scatter = 0.0, outliers = 0.0;
-      if (!has(other, jitter) && !has(other, tails)) {
+      if (std::none_of(other.effects.begin(), other.effects.end(), is_scatter)) {
         for (const FrameEffect& frame : comparison.frames) {
           scatter = std::max(scatter, frame.log_evidence);
           if (frame.effect == tails) outliers = std::max(outliers, frame.log_evidence);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
-#include <string_view>
 
 #include "base/long_work.h"
 #include "diagnose/effects/effect_library.h"
@@ -15,14 +13,6 @@ namespace {
 constexpr std::size_t kMostTwins = 4;  // fits
 constexpr double kMuchWorse = 20.0;    // of chi²
 constexpr double kNoWorse = 2.0;       // of chi²: a fit that is worse than its twin by less is as good
-
-std::optional<std::string_view> twin_of(std::string_view id) {
-  if (id == ids::tether) return ids::end_stop;
-  if (id == ids::end_stop) return ids::tether;
-  if (id == ids::camera_motion) return ids::base_vibration;
-  if (id == ids::base_vibration) return ids::camera_motion;
-  return {};
-}
 
 /// The index of one of an effect's parameters among the common ones of a layout.
 std::optional<Eigen::Index> global_of(const ParameterLayout& layout, EffectSlot slot) {
@@ -42,26 +32,23 @@ std::optional<Eigen::Index> phase_of(const ParameterLayout& layout, std::size_t 
   return {};
 }
 
-/// The start for `to` in place of `from` in a fit. Empty if a bumper is at the other end, or if the size is beyond its
-/// range.
+/// The start for `to`, the mirror of `from`, in its place in a fit. Empty if a bumper is at the other end, or if the
+/// size is beyond its range.
 std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std::size_t from, std::size_t to,
                                  const ParameterLayout& layout) {
   FitPoint start = with_some_effects(layout, fit);
-  const std::string_view from_id = effect_list()[from].id, to_id = effect_list()[to].id;
-  const auto size = global_of(*fit.layout, slot_of(from_id)), size_to = global_of(layout, slot_of(to_id));
-  const auto shape = global_of(*fit.layout, slot_of(from_id, 1)), shape_to = global_of(layout, slot_of(to_id, 1));
+  const Mirror& mirror = effect_list()[from].mirror;
+  const auto size = global_of(*fit.layout, {from, 0}), size_to = global_of(layout, {to, 0});
+  const auto shape = global_of(*fit.layout, {from, 1}), shape_to = global_of(layout, {to, 1});
   if (!size || !size_to || !shape || !shape_to) return {};
-  double value = fit.at.global[*size];
-  const double of_shape = fit.at.global[*shape];
-  const bool wave = effect_list()[from].search == Search::wave;
-  if (!wave && !(of_shape > set.x_mid_m)) return {};
-  if (wave) {
-    const double per = std::pow(2.0 * std::numbers::pi * of_shape, 2);
-    value = to_id == ids::base_vibration ? value * per : value / per;
+  const double of_shape = fit.at.global[*shape], of_size = fit.at.global[*size];
+  const double value = mirror.size != nullptr ? mirror.size(of_size, of_shape) : of_size;
+  if (mirror.beyond_middle && !(of_shape > set.x_mid_m)) return {};
+  if (effect_list()[from].search == Search::wave) {
     const auto phase = phase_of(*fit.layout, from), phase_to = phase_of(layout, to);
     if (!phase || !phase_to) return {};
     for (std::size_t i = 0; i < start.own.size(); ++i) {
-      start.own[i][*phase_to] = fit.at.own[i][*phase] + std::numbers::pi;
+      start.own[i][*phase_to] = fit.at.own[i][*phase] + mirror.phase_rad;
     }
   }
   const ParameterRange& range = layout.globals()[static_cast<std::size_t>(*size_to)].range;
@@ -71,16 +58,25 @@ std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std:
   return start;
 }
 
-/// A bumper and a cable whose fits are as good are one cause for these data.
-void join_names(Comparison& comparison) {
-  const std::size_t cable = effect_index(ids::tether), bumper = effect_index(ids::end_stop);
-  const Hypothesis *one = find(comparison, {cable}), *other = find(comparison, {bumper});
+/// Two effects whose fits are as good, such as a bumper and a cable, are one cause for these data.
+void join_names(std::size_t effect, std::size_t mirror, Comparison& comparison) {
+  const Hypothesis *one = find(comparison, {effect}), *other = find(comparison, {mirror});
   if (comparison.alike.empty() || one == nullptr || other == nullptr || one->fit <= 0 || other->fit <= 0) return;
   const auto cost = [&](const Hypothesis& of) { return comparison.fits[static_cast<std::size_t>(of.fit)].cost; };
   if (!(std::abs(cost(*one) - cost(*other)) < kNoWorse)) return;
-  const std::size_t first = std::min(comparison.alike[cable], comparison.alike[bumper]),
-                    last = std::max(comparison.alike[cable], comparison.alike[bumper]);
+  const std::size_t first = std::min(comparison.alike[effect], comparison.alike[mirror]),
+                    last = std::max(comparison.alike[effect], comparison.alike[mirror]);
   std::replace(comparison.alike.begin(), comparison.alike.end(), last, first);
+}
+
+/// The same of all pairs in which both move the body: images tell a camera from it.
+void join_all_names(Comparison& comparison) {
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    const EffectInfo& info = effect_list()[e];
+    if (info.mirror.id.empty()) continue;
+    const std::size_t mirror = effect_index(info.mirror.id);
+    if (e < mirror && !info.of_camera && !effect_list()[mirror].of_camera) join_names(e, mirror, comparison);
+  }
 }
 
 struct TriedTwin {
@@ -100,9 +96,9 @@ void add_twins(const TrackSet& set, const std::set<std::size_t>& left_out, const
   std::vector<TriedTwin> tried;
   for (const Hypothesis& one : likeliest) {
     for (const std::size_t e : one.effects) {
-      const auto twin = twin_of(effect_list()[e].id);
-      if (!twin || (tried.size() >= kMostTwins && one.effects.size() > 1)) continue;
-      const std::size_t to = effect_index(*twin);
+      const Mirror& mirror = effect_list()[e].mirror;
+      if (mirror.id.empty() || (tried.size() >= kMostTwins && one.effects.size() > 1)) continue;
+      const std::size_t to = effect_index(mirror.id);
       if (left_out.contains(to) || has(one, to)) continue;
       const MotionFit& fit = comparison.fits[static_cast<std::size_t>(one.fit)];
       if (std::find(fit.effects.begin(), fit.effects.end(), e) == fit.effects.end()) continue;
@@ -140,7 +136,7 @@ void add_twins(const TrackSet& set, const std::set<std::size_t>& left_out, const
     });
     add(comparison, std::move(*one));
   }
-  join_names(comparison);
+  join_all_names(comparison);
 }
 
 }  // namespace glidelab::diagnose

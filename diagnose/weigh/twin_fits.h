@@ -1,4 +1,5 @@
-/// Effects that move the body, or its picture, in the same way: the fit of one is a start for the other.
+/// A search that stopped at a poor minimum starts again from the fit of the effect's mirror (effects/effect.h), which
+/// moves the body or its image in the same way.
 ///
 /// A cable that tightens beyond some place is a bumper at the downhill end, and a camera that sways is a table that
 /// shakes, since the start of each motion takes up what else their displacements have:

@@ -25,25 +25,6 @@ std::string_view key_of(OutsideFailure failure) {
   return "none";
 }
 
-std::string words_of(OutsideFailure failure, std::size_t runs) {
-  const char* const was = runs == 1 ? "was" : "were";
-  switch (failure) {
-    case OutsideFailure::exit_status:
-      return fmt::format("{} ended with an exit status other than 0", runs);
-    case OutsideFailure::signal:
-      return fmt::format("{} {} ended by a signal", runs, was);
-    case OutsideFailure::time_out:
-      return fmt::format("{} {} not done in time", runs, was);
-    case OutsideFailure::no_output:
-      return fmt::format("{} left no results.json in {{out}}", runs);
-    case OutsideFailure::bad_output:
-      return fmt::format("{} left an invalid results.json", runs);
-    case OutsideFailure::none:
-      break;
-  }
-  return fmt::format("{} {} done", runs, was);
-}
-
 std::string why_begins(OutsideFailure failure) {
   return fmt::format("the estimator failed ({})", key_of(failure));
 }

@@ -16,8 +16,6 @@ inline constexpr std::array kOutsideFailures = {OutsideFailure::exit_status, Out
 
 /// In files: "exit_status".
 std::string_view key_of(OutsideFailure failure);
-/// For people, of so many runs: "3 ended with an exit status other than 0".
-std::string words_of(OutsideFailure failure, std::size_t runs);
 
 /// How one run went.
 struct OutsideRun {

@@ -13,8 +13,8 @@
 ///
 /// Uncertainty: correlated noise enters by the sandwich H^-1 J'W Gamma W J H^-1. If the residuals are larger than the
 /// noise explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is
-/// added, with its degrees of freedom. Of four blocks or more, the pieces' scores are those of what each block leaves
-/// with parameters of its own; how the blocks differ, the jackknife says. The errors of the camera and the plane, of
+/// added, with its degrees of freedom. With four blocks or more, the pieces' scores come from the residuals of each
+/// block's own fit; how the blocks differ, the jackknife says. The errors of the camera and the plane, of
 /// the scale, and of the mass by which a recorded force is divided are propagated as signed shifts.
 #pragma once
 

@@ -150,7 +150,7 @@ std::string wanted_calibration_text() {
 
 /// An effect's name for people; "unknown", "none" and "two effects" stay, which are headings of this page.
 std::string case_name(const std::string& word) {
-  return word == "unknown" || word == "none" ? word : effect_name(word);
+  return diagnose::verdict_of_id(word) ? word : effect_name(word);
 }
 
 std::string said_text(const std::map<std::string, std::size_t>& times_said) {
@@ -181,7 +181,7 @@ Json outcome_json(const validate::BlindOutcome& outcome) {
     object["parameters"] = cause.parameters;
     one["truth"].push_back(std::move(object));
   }
-  one["verdict"] = outcome.verdict.verdict;
+  one["verdict"] = validate::verdict_word(outcome.verdict);
   if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
   one["named"] = Json::array();
   for (const auto& effect : outcome.verdict.effects) {
@@ -191,7 +191,7 @@ Json outcome_json(const validate::BlindOutcome& outcome) {
   put(one, "none", outcome.verdict.none);
   put(one, "unknown", outcome.verdict.unknown);
   if (outcome.left_out) {
-    one["left_out"] = {{"verdict", outcome.left_out->verdict}, {"named", Json::array()}};
+    one["left_out"] = {{"verdict", validate::verdict_word(*outcome.left_out)}, {"named", Json::array()}};
     for (const auto& effect : outcome.left_out->effects) {
       one["left_out"]["named"].push_back({{"id", effect.id}, {"probability", effect.probability}});
     }
@@ -260,13 +260,14 @@ std::string cases_table(const BlindRun& run) {
   HtmlTable table({"case", "truth", "gain", "verdict", "probability", "indistinguishable from"}, 6);
   table.stack_when_narrow(2);
   for (const validate::BlindOutcome& outcome : run.outcomes) {
-    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = escape(outcome.verdict.verdict), p, same;
+    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = validate::verdict_word(outcome.verdict), p,
+                same;
     for (const auto& cause : outcome.causes) {
       truth += (truth.empty() ? "" : " + ") + escape(effect_name(cause.id));
       gain += (gain.empty() ? "" : ", ") + base::number_text(cause.gain, 2);
     }
-    if (said == "none") p = base::digits_text(outcome.verdict.none, 2);
-    if (said == "unknown") p = base::digits_text(outcome.verdict.unknown, 2);
+    if (outcome.verdict.verdict == diagnose::Verdict::none) p = base::digits_text(outcome.verdict.none, 2);
+    if (outcome.verdict.verdict == diagnose::Verdict::unknown) p = base::digits_text(outcome.verdict.unknown, 2);
     if (!outcome.verdict.effects.empty()) said.clear();
     for (const auto& effect : outcome.verdict.effects) {
       said += (said.empty() ? "" : " + ") + escape(effect_name(effect.id));

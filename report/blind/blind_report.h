@@ -1,20 +1,15 @@
 /// The results of blind cases: a file, a text, a page; with the targets, and the meaning of a score in words.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "report/blind/blind_run.h"
 #include "report/html/html.h"
 #include "validate/blind/blind_score.h"
-#include "validate/blind/everyday_score.h"
 
 namespace glidelab::report {
-
-/// Largest acceptable calibration error.
-inline constexpr double kWantedCalibration = 0.05;
 
 struct BlindTarget {
   std::string what;
@@ -40,14 +35,6 @@ std::string blind_percent(const validate::BlindShare& share);
 /// The value of a verdict on an experiment like these: how often it is right, with the 95 % interval of Clopper and
 /// Pearson, whether its probabilities can be trusted, and which targets are missed. HTML.
 std::string blind_meaning(const validate::BlindScore& score);
-
-struct BlindRun {
-  std::uint64_t seed = 0;
-  std::vector<validate::BlindOutcome> outcomes;
-  validate::BlindScore score;
-  bool images = false;                                   ///< filmed experiments, not tracks
-  std::optional<validate::EverydayScore> everyday = {};  ///< of everyday cases; `score` is then empty
-};
 
 /// The score and every case's outcome, with a newline at its end. No number in it is NaN.
 std::string blind_json(const BlindRun& run);

@@ -206,7 +206,7 @@ Json case_json(const validate::BlindOutcome& outcome) {
   }
   one["dirt"] = Json::array();
   for (const auto& imperfection : truth.imperfections) one["dirt"].push_back(imperfection.id);
-  one["verdict"] = outcome.verdict.verdict;
+  one["verdict"] = validate::verdict_word(outcome.verdict);
   if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
   one["named"] = Json::array();
   for (const auto& name : validate::said_by_diagnosis(outcome.verdict).names) {
@@ -243,7 +243,7 @@ std::string everyday_cases_table(const BlindRun& run) {
     table.row({fmt::format("{}", outcome.index),
                fmt::format("{}, {}", words_of_class(std::string(validate::word(truth.kind))),
                            truth.strong ? "strong" : "moderate"),
-               escape(causes), base::number_text(truth.excess, 2), escape(outcome.verdict.verdict),
+               escape(causes), base::number_text(truth.excess, 2), validate::verdict_word(outcome.verdict),
                escape(named_text(validate::said_by_diagnosis(outcome.verdict))),
                escape(named_text(validate::said_by_forward_selection(outcome.verdict)))});
   }

@@ -1,10 +1,13 @@
 /// The results of everyday blind cases: a file, a text, a page; with the targets.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "report/blind/blind_report.h"
+#include "report/blind/blind_run.h"
+#include "report/html/html.h"
+#include "validate/blind/everyday_score.h"
 
 namespace glidelab::report {
 

@@ -227,7 +227,7 @@ Json levels_json(const diagnose::GapLevels& levels) {
 std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   Json document;
   document["format"] = 1;
-  document["verdict"] = verdict_id(diagnosis.verdict);
+  document["verdict"] = diagnose::verdict_id(diagnosis.verdict);
   document["points"] = diagnosis.points;
   document["clips_left_out"] = left_out_json(diagnosis.left_out);
   document["summary"] = verdict_words(diagnosis);

@@ -50,7 +50,7 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
                    (names.empty() ? effect_name(effect.id) : names) + beside_others(diagnosis, effect));
     }
   } else {
-    text += tile(verdict_id(diagnosis.verdict), "verdict");
+    text += tile(std::string(diagnose::verdict_id(diagnosis.verdict)), "verdict");
   }
   return text + common_tiles(diagnosis, "gap of held-out clips (1: noise)") + "</div>\n";
 }
@@ -351,7 +351,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   std::string text = left_out_text(diagnosis.left_out);
-  text += fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
+  text += fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), diagnose::verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
   if (!sequence.empty()) text += sequence + wrapped("next: " + next_step_words(diagnosis.next)) + "\n";
   if (diagnosis.lines) {

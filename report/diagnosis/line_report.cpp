@@ -88,7 +88,7 @@ std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict != diagnose::Verdict::effect) {
-    text += tile(verdict_id(diagnosis.verdict), "verdict");
+    text += tile(std::string(diagnose::verdict_id(diagnosis.verdict)), "verdict");
   } else if (!lines.either_of.empty()) {
     text += tile(probability_text(lines.either_probability),
                  fmt::format("either of: {}", fmt::join(effect_names(lines.either_of), ", ")));

@@ -19,6 +19,26 @@ void for_failures(const fit::OutsideTally& tally, const Use& use) {
   }
 }
 
+/// Of so many runs: "3 ended with an exit status other than 0".
+std::string failure_words(fit::OutsideFailure failure, std::size_t runs) {
+  const char* const was = runs == 1 ? "was" : "were";
+  switch (failure) {
+    case fit::OutsideFailure::exit_status:
+      return fmt::format("{} ended with an exit status other than 0", runs);
+    case fit::OutsideFailure::signal:
+      return fmt::format("{} {} ended by a signal", runs, was);
+    case fit::OutsideFailure::time_out:
+      return fmt::format("{} {} not done in time", runs, was);
+    case fit::OutsideFailure::no_output:
+      return fmt::format("{} left no results.json in {{out}}", runs);
+    case fit::OutsideFailure::bad_output:
+      return fmt::format("{} left an invalid results.json", runs);
+    case fit::OutsideFailure::none:
+      break;
+  }
+  return fmt::format("{} {} done", runs, was);
+}
+
 }  // namespace
 
 Json outside_json(const fit::OutsideTally& tally) {
@@ -41,7 +61,7 @@ Json outside_json(const fit::OutsideTally& tally) {
 std::string outside_text(const fit::OutsideTally& tally) {
   std::string kinds;
   for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
-    kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
+    kinds += (kinds.empty() ? "" : "; ") + failure_words(failure, kind.count);
     if (failure != fit::OutsideFailure::no_output)
       kinds += fmt::format(", the first: {}", base::printable_text(kind.first));
   });
@@ -60,7 +80,7 @@ std::string outside_failed(const fit::OutsideTally& tally) {
   if (tally.failed() == 0) return {};
   std::string kinds;
   for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
-    kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
+    kinds += (kinds.empty() ? "" : "; ") + failure_words(failure, kind.count);
   });
   return fmt::format("“{}” failed in {} of {} {}: {}.", base::printable_text(tally.name), tally.failed(), tally.runs,
                      tally.runs == 1 ? "run" : "runs", kinds);

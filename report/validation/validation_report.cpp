@@ -222,23 +222,39 @@ bool is_absent(const validate::QuantityComparison& of) {
   return !of.truth && !of.value;
 }
 
+/// One value of each configuration for which the estimator has any, by falling mass.
+std::vector<const validate::QuantityComparison*> recovered_configurations(const validate::Comparison& comparison,
+                                                                          const std::string& estimator) {
+  std::vector<const validate::QuantityComparison*> found;
+  for (const validate::QuantityComparison& q : comparison.quantities) {
+    const bool known = std::any_of(found.begin(), found.end(),
+                                   [&](const auto* other) { return other->configuration == q.configuration; });
+    if (q.estimator == estimator && q.value && !known) found.push_back(&q);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) { return a->mass_kg > b->mass_kg; });
+  return found;
+}
+
+/// The answer, and three or four numbers: those of the middle mass.
 std::string headline(const validate::Comparison& comparison) {
+  const std::string answer = base::printable_text(agreement_of(comparison));
   const std::string estimator = headline_estimator(comparison);
-  if (estimator.empty()) return agreement_of(comparison) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"configuration", "quantity", "recovered", "truth"}};
-  std::string previous;
+  const auto configurations = recovered_configurations(comparison, estimator);
+  if (configurations.empty()) return answer + "\n";
+  const validate::QuantityComparison& typical = *configurations[configurations.size() / 2];
+  std::vector<std::vector<std::string>> rows = {{"quantity", "recovered", "truth"}};
   bool no_constant = false;
   for (const validate::QuantityComparison& q : comparison.quantities) {
-    if (q.estimator != estimator || is_absent(q)) continue;
+    if (q.estimator != estimator || q.configuration != typical.configuration || is_absent(q)) continue;
     const double sd = q.sd.value_or(0.0);
-    rows.push_back({q.configuration == previous ? "" : name_of(q), heading_of(q.quantity),
-                    q.value ? base::value_and_sd_text(*q.value, sd) : "–",
+    rows.push_back({heading_of(q.quantity), q.value ? base::value_and_sd_text(*q.value, sd) : "–",
                     q.truth ? base::value_text(*q.truth, sd) : "–"});
-    previous = q.configuration;
     no_constant = no_constant || (q.value && !q.truth);
   }
-  return fmt::format("{}\n\nRecovered from the images with the {}, ± one sd:\n\n{}{}",
-                     base::printable_text(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 2),
+  const std::string among =
+      configurations.size() == 1 ? "" : fmt::format(", one of {} configurations", configurations.size());
+  return fmt::format("{}\n\nRecovered from the images with the {}, ± one sd:\n\n{}{}:\n{}{}", answer,
+                     estimator_name(estimator), base::printable_text(name_of(typical)), among, text_table(rows, 1),
                      no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }
 

@@ -28,8 +28,9 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
                        const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
                        const base::Progress& progress = base::no_progress);
 
-/// First, for each configuration, K/m, mu and alpha by the better estimator with their truth, and how many values agree
-/// with it; then, below a line "In full:", every quantity, R² of each clip's lines, position error, frames and time.
+/// First how many values agree with the truth, and K/m, mu, alpha and v_lim of the middle mass by the better estimator;
+/// then, below a line "In full:", every quantity of every configuration, R² of each clip's lines, position error,
+/// frames and time.
 std::string comparison_text(const validate::Comparison& comparison);
 
 /// How well the truth was recovered. HTML.

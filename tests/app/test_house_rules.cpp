@@ -4,15 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/files/file_io.h"
+#include "diagnose/effects/effect_list.h"
 #include "test_paths.h"
 #include "tests/app/source_tree.h"
 #include "tests/catch.h"
@@ -39,6 +43,13 @@ const std::vector<std::string> kItems = {"app/commands/",
                                          "sim/force/laws/",
                                          "render/scenario/sections/",
                                          "core/motion/bandwidth/rule_"};
+
+/// Headers whose functions several files of a list define: bind_<topic>.cpp each one.
+const std::set<std::string> kDefinedElsewhere = {"python/binding/bindings.h"};
+
+/// Where an effect may be named in words: its own description; the simulator, which has force laws of the same names;
+/// the generator of blind cases, which shares nothing with what it tests.
+const std::vector<std::string> kNamesEffects = {"diagnose/effects/", "sim/", "validate/blind/case/"};
 
 /// Sources without a header of their name that still stand elsewhere; the list only shrinks.
 const std::set<std::string> kStandingWithoutHeader = {};
@@ -89,6 +100,91 @@ std::set<std::string> without_header(const std::vector<Source>& sources) {
     const std::string path = source.path.string();
     if (source.path.extension() != ".cpp" || is_item(source)) continue;
     if (!headers.contains(fs::path(source.path).replace_extension().string())) found.insert(path);
+  }
+  return found;
+}
+
+/// The statements of a source that begin in the first column, to the end of the line on which they end or a body
+/// begins.
+std::vector<std::string> statements_of(const std::string& text) {
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  std::string statement;
+  for (std::string line; std::getline(lines, line);) {
+    if (const std::size_t comment = line.find("//"); comment != std::string::npos) line.erase(comment);
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (line.empty() || (statement.empty() && std::isalpha(static_cast<unsigned char>(line.front())) == 0)) continue;
+    statement += line + " ";
+    if (std::string_view(";{}").find(line.back()) == std::string_view::npos) continue;
+    found.push_back(std::exchange(statement, {}));
+  }
+  return found;
+}
+
+/// Headers without a source of their name that declare a function and leave it to another file to define.
+std::vector<std::string> defined_elsewhere(const std::vector<Source>& sources) {
+  std::set<std::string> all;
+  for (const Source& source : sources) all.insert(source.path.string());
+  std::vector<std::string> found;
+  for (const Source& source : sources) {
+    const bool has_source = all.contains(fs::path(source.path).replace_extension(".cpp").string());
+    if (source.path.extension() != ".h" || has_source || kDefinedElsewhere.contains(source.path.string())) continue;
+    for (const std::string& statement : statements_of(source.text)) {
+      const bool plain = !statement.starts_with("using ") && !statement.starts_with("static_assert(");
+      const std::size_t open = statement.find('(');
+      if (!plain || !statement.ends_with("; ") || open == std::string::npos || statement.find('=') < open) continue;
+      found.push_back(fmt::format("{}: {}", source.path.string(), statement.substr(0, open)));
+    }
+  }
+  return found;
+}
+
+/// The texts between quotes, without what is in comments or an include.
+std::vector<std::string> literals_of(const std::string& text) {
+  std::vector<std::string> found;
+  std::size_t i = 0;
+  const auto is = [&](std::string_view what) { return std::string_view(text).substr(i).starts_with(what); };
+  while (i < text.size()) {
+    if (is("//") || is("#include")) {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (is("R\"")) {
+      const std::size_t open = text.find('(', i);
+      const std::string end = ")" + text.substr(i + 2, open - i - 2) + "\"";
+      const std::size_t close = text.find(end, open);
+      found.push_back(text.substr(open + 1, close - open - 1));
+      i = close + end.size();
+    } else if (is("\"")) {
+      const std::size_t open = i++;
+      while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+      found.push_back(text.substr(open + 1, i - open - 1));
+      ++i;
+    } else if (is("'\\")) {
+      i = text.find('\'', i + 3) + 1;
+    } else {
+      i += is("'") && i + 2 < text.size() && text[i + 2] == '\'' ? 3 : 1;
+    }
+  }
+  return found;
+}
+
+/// Literals that hold the id of an effect, which `ids::` has too. An id that is also an English word counts where it is
+/// the whole literal.
+std::vector<std::string> typed_ids(const std::vector<Source>& sources) {
+  std::vector<std::string> found;
+  for (const Source& source : sources) {
+    const std::string path = source.path.string();
+    if (std::any_of(kNamesEffects.begin(), kNamesEffects.end(), [&](const auto& in) { return path.starts_with(in); }))
+      continue;
+    for (const std::string& literal : literals_of(source.text)) {
+      static const std::regex kWord("\\w+");
+      for (auto word = std::sregex_iterator(literal.begin(), literal.end(), kWord); word != std::sregex_iterator();
+           ++word) {
+        const std::string id = word->str();
+        const auto& all = diagnose::kEffectIds;
+        if (std::find(all.begin(), all.end(), id) == all.end()) continue;
+        if (id == literal || id.find('_') != std::string::npos) found.push_back(fmt::format("{}: {}", path, id));
+      }
+    }
   }
   return found;
 }
@@ -206,6 +302,32 @@ TEST_CASE("every source has the header of its name, unless it is an item of a li
   CHECK(without_header({{"core/a/x.h", ""}, {"core/b/x.cpp", ""}, {"core/a/x_more.cpp", ""}}) ==
         std::set<std::string>{"core/a/x_more.cpp", "core/b/x.cpp"});
   CHECK(without_header({{"app/commands/x_command.cpp", ""}, {"core/motion/bandwidth/rule_x.cpp", ""}}).empty());
+}
+
+TEST_CASE("a header without a source of its name defines what it declares") {
+  CHECK(defined_elsewhere(tests::sources_below(kRooms)) == std::vector<std::string>{});
+  const Source whole{"core/a/x.h",
+                     "using F = double(int);\nstatic_assert(sizeof(int) == 4);\ninline constexpr auto kA = f(1);\n"
+                     "struct Part {\n  int a;\n  int f() const;\n};\ninline int twice(int a) {\n  return 2 * a;\n}\n"};
+  CHECK(defined_elsewhere({whole}).empty());
+  const Source declares{"core/a/y.h", "// f();\nint first(int a,\n          int b = 1);  // of both\nstruct Part;\n"};
+  CHECK(defined_elsewhere({whole, declares}) == std::vector<std::string>{"core/a/y.h: int first"});
+  CHECK(defined_elsewhere({declares, {"core/a/y.cpp", ""}}).empty());
+  for (const std::string& header : kDefinedElsewhere) CHECK(fs::exists(fs::path(tests::kSourceDir) / header));
+}
+
+TEST_CASE("no literal holds the id of an effect, which the list of effects has") {
+  CHECK(typed_ids(tests::sources_below(kRooms)) == std::vector<std::string>{});
+  const std::string id(diagnose::kEffectIds.front());
+  REQUIRE(id.find('_') != std::string::npos);
+  CHECK(typed_ids({{"report/x.cpp", fmt::format("f(\"--without {}\");", id)}}) ==
+        std::vector<std::string>{"report/x.cpp: " + id});
+  CHECK(typed_ids({{"report/x.cpp", fmt::format("f(R\"({})\", '\"');", id)}}).size() == 1);
+  CHECK(typed_ids({{"report/x.cpp", fmt::format("f(); // \"{}\"\n#include \"{}\"\nids::{};", id, id, id)}}).empty());
+  CHECK(typed_ids({{"report/x.cpp", fmt::format("f(\"http://a\", \"{}\");", id)}}).size() == 1);
+  CHECK(typed_ids({{"report/x.cpp", "f(\"strong compression\");"}}).empty());
+  CHECK(typed_ids({{"report/x.cpp", "f(\"compression\");"}}).size() == 1);
+  CHECK(typed_ids({{"sim/x.cpp", fmt::format("f(\"{}\");", id)}}).empty());
 }
 
 TEST_CASE("a test lies in the folder that mirrors its source's") {

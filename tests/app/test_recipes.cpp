@@ -206,6 +206,7 @@ TEST_CASE("the recipe of an effect: all its steps make one, and each step that i
   copy.add_line_before(page, next_row, row);
 
   copy.check_does_not_compile(effect, ".both_signs = false,", "", "both_signs");
+  copy.check_does_not_compile(effect, ".drag = Drag::none,", "", "drag");
   copy.check_does_not_compile(list, line + "\n", "", "ids::toy_effect");
   copy.remove(effect);
   copy.check_does_not_build("effects::toy_effect()");

@@ -12,11 +12,16 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "diagnose/effects/effect_list.h"
+#include "diagnose/result/explanation.h"
 #include "diagnose/result/joined_ids.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_filmed_effects.h"
 
 namespace glidelab::validate {
+
+using Json = nlohmann::json;
+using diagnose::Verdict;
+
 namespace {
 
 /// What the list calls a cause that is drawn as one outside it, since the list has become longer; empty: nothing.
@@ -26,17 +31,17 @@ std::string_view fair_name(const std::string& outside) {
   return {};
 }
 
-/// Whether a first name, or a verdict without one, is right about a cause outside the list.
-bool recognises(const BlindOutcome& outcome, const std::string& said) {
-  return said == "unknown" || said == fair_name(outcome.causes.front().id);
+/// Whether a verdict, or its first name, is right about a cause outside the list.
+bool recognises(const BlindOutcome& outcome, std::optional<Verdict> verdict, const std::string* name) {
+  return name != nullptr ? *name == fair_name(outcome.causes.front().id) : verdict == Verdict::unknown;
 }
 
-using Json = nlohmann::json;
-
 /// Json::exception if something is missing or of the wrong type.
-BlindVerdict verdict_of(const Json& document) {
+BlindVerdict verdict_of(const Json& document, const std::filesystem::path& file) {
   BlindVerdict verdict;
-  verdict.verdict = document.at("verdict");
+  const std::string id = document.at("verdict");
+  verdict.verdict = diagnose::verdict_of_id(id);
+  if (!verdict.verdict) throw base::InputError(base::Issue{file.string(), 0, "verdict", id, "none, effect or unknown"});
   verdict.points = document.at("points");
   verdict.none = document.at("probability").at("none");
   verdict.unknown = document.at("probability").at("unknown");
@@ -69,13 +74,17 @@ BlindVerdict verdict_of(const Json& document) {
 
 }  // namespace
 
+std::string verdict_word(const BlindVerdict& verdict) {
+  return std::string(verdict.verdict ? diagnose::verdict_id(*verdict.verdict) : "failed");
+}
+
 BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
   const Json document = Json::parse(base::read_file(file), nullptr, false);
   if (!document.is_object() || document.value("format", Json()) != 1 || !document.contains("verdict")) {
     throw base::InputError(base::Issue{file.string(), 0, "", "no diagnosis", "a diagnosis.json"});
   }
   try {
-    return verdict_of(document);
+    return verdict_of(document, file);
   } catch (const Json::exception& error) {
     throw base::InputError(base::Issue{file.string(), 0, "", error.what(), "a diagnosis.json"});
   }
@@ -83,9 +92,9 @@ BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
 
 void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict) {
   const auto is_told = [&](const std::string& id) { return std::find(told.begin(), told.end(), id) != told.end(); };
-  if (told.empty() || verdict.verdict == "failed") return;
+  if (told.empty() || !verdict.verdict) return;
   std::erase_if(verdict.effects, [&](const BlindNamed& effect) { return is_told(effect.id); });
-  if (verdict.verdict == "effect" && verdict.effects.empty()) verdict.verdict = "none";
+  if (verdict.verdict == Verdict::effect && verdict.effects.empty()) verdict.verdict = Verdict::none;
   for (BlindRanked& ranked : verdict.ranking) {
     std::erase_if(ranked.ids, is_told);
     if (ranked.ids.empty()) verdict.none += ranked.probability;
@@ -100,6 +109,10 @@ constexpr double kSameShrink = 0.95;
 constexpr double kClearGap = 3.0;  // standard errors: a smaller reduction is noise over noise
 constexpr std::size_t kBins = 10;
 
+/// Words that a verdict has in place of a name.
+constexpr std::string_view kNone = diagnose::verdict_id(Verdict::none),
+                           kUnknown = diagnose::verdict_id(Verdict::unknown);
+
 std::set<std::string> classes_of(const BlindOutcome& outcome) {
   std::set<std::string> classes;
   for (const BlindCause& cause : outcome.causes) classes.insert(blind_class(cause.id, outcome.filmed));
@@ -110,9 +123,9 @@ const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
   return outcome.filmed ? filmed_effects() : library_effects();
 }
 
-/// The answer of one decision method to one case: none, unknown, or names (in order).
+/// The answer of one decision method to one case: a verdict, none if it failed, and names (in order).
 struct Saying {
-  std::string word;  // none, unknown, effect, failed
+  std::optional<Verdict> verdict;
   std::vector<std::string> names;
 };
 
@@ -139,20 +152,20 @@ const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t siz
 
 /// Names the effect whose refit lowers the residuals most; it always names one.
 Saying of_best_residual(const BlindVerdict& verdict) {
-  if (verdict.verdict == "failed") return {"failed", {}};
+  if (!verdict.verdict) return {};
   const BlindRanked* best = most(verdict.ranking, 1, "", 0.0);
-  return best == nullptr ? Saying{"none", {}} : Saying{"effect", {*best->ids.begin()}};
+  return best == nullptr ? Saying{Verdict::none, {}} : Saying{Verdict::effect, {*best->ids.begin()}};
 }
 
 /// Forward selection by Schwarz's criterion: one effect if it lowers the criterion, a second one if that lowers it
 /// further.
 Saying of_stepwise_bic(const BlindVerdict& verdict) {
-  if (verdict.verdict == "failed") return {"failed", {}};
+  if (!verdict.verdict) return {};
   const double price = 0.5 * std::log(std::max(2.0, verdict.points));
   const auto value = [&](const BlindRanked& one) { return one.log_likelihood_gain - price * one.parameters; };
   const BlindRanked* first = most(verdict.ranking, 1, "", price);
-  if (first == nullptr || value(*first) <= 0.0) return {"none", {}};
-  Saying saying{"effect", {*first->ids.begin()}};
+  if (first == nullptr || value(*first) <= 0.0) return {Verdict::none, {}};
+  Saying saying{Verdict::effect, {*first->ids.begin()}};
   const BlindRanked* second = most(verdict.ranking, 2, saying.names.front(), price);
   if (second == nullptr || value(*second) <= value(*first)) return saying;
   for (const std::string& id : second->ids) {
@@ -175,14 +188,15 @@ void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod
   }
   switch (outcome.kind) {
     case BlindKind::none:
-      return count(method.none, saying.word == "none");
+      return count(method.none, saying.verdict == Verdict::none);
     case BlindKind::single:
       return count(method.single[std::string(strength_word(outcome))],
                    !saying.names.empty() && truth.contains(blind_class(saying.names.front(), outcome.filmed)));
     case BlindKind::pair:
       return count(method.pair, found == truth.size());
     case BlindKind::outside:
-      return count(method.outside, recognises(outcome, saying.names.empty() ? saying.word : saying.names.front()));
+      return count(method.outside,
+                   recognises(outcome, saying.verdict, saying.names.empty() ? nullptr : &saying.names.front()));
   }
 }
 
@@ -212,7 +226,7 @@ BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
 
 /// The most likely word of a verdict with its probability, summed over classes of effects.
 std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filmed) {
-  std::map<std::string, double> sums = {{"none", verdict.none}, {"unknown", verdict.unknown}};
+  std::map<std::string, double> sums = {{std::string(kNone), verdict.none}, {std::string(kUnknown), verdict.unknown}};
   for (const BlindRanked& ranked : verdict.ranking) {
     std::set<std::string> classes;
     for (const std::string& id : ranked.ids) classes.insert(blind_class(id, filmed));
@@ -224,8 +238,8 @@ std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filme
 }
 
 bool is_right(const BlindOutcome& outcome, const std::string& said) {
-  if (outcome.kind == BlindKind::none) return said == "none";
-  if (outcome.kind == BlindKind::outside) return recognises(outcome, said);
+  if (outcome.kind == BlindKind::none) return said == kNone;
+  if (outcome.kind == BlindKind::outside) return said == kUnknown || said == fair_name(outcome.causes.front().id);
   return classes_of(outcome).contains(said);
 }
 
@@ -238,7 +252,7 @@ void add_reliability(const std::vector<BlindOutcome>& outcomes, BlindScore& scor
     score.reliability[b].to = static_cast<double>(b + 1) / kBins;
   }
   for (const BlindOutcome& outcome : outcomes) {
-    if (outcome.verdict.verdict == "failed") continue;
+    if (!outcome.verdict.verdict) continue;
     const auto [said, p] = likeliest(outcome.verdict, outcome.filmed);
     const auto bin = std::min(kBins - 1, static_cast<std::size_t>(p * kBins));
     sums[bin] += p;
@@ -269,7 +283,7 @@ void add_shrink(const BlindOutcome& outcome, BlindScore& score) {
 void add_case(const BlindOutcome& outcome, BlindScore& score) {
   const BlindVerdict& verdict = outcome.verdict;
   const std::string strength(strength_word(outcome));
-  if (outcome.kind == BlindKind::none) count(score.false_alarm, verdict.verdict != "none");
+  if (outcome.kind == BlindKind::none) count(score.false_alarm, verdict.verdict != Verdict::none);
   if (outcome.kind == BlindKind::single) {
     count(score.in_set[strength], named_by(outcome).contains(true_class(outcome)));
     count(score.exact[strength], !verdict.effects.empty() && verdict.effects.front().id == outcome.causes.front().id);
@@ -287,11 +301,11 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
   if (outcome.kind == BlindKind::outside) {
     const std::string_view fair = fair_name(outcome.causes.front().id);
     count(score.recognised[strength],
-          recognises(outcome, verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id));
+          recognises(outcome, verdict.verdict, verdict.effects.empty() ? nullptr : &verdict.effects.front().id));
     count(score.wrong_name, std::any_of(verdict.effects.begin(), verdict.effects.end(), [&](const BlindNamed& effect) {
             return effect.probability > kSureName && effect.id != fair;
           }));
-    if (verdict.verdict == "unknown") {
+    if (verdict.verdict == Verdict::unknown) {
       const auto& where = verdict.where;
       const std::string& variable = outcome.causes.front().variable;
       count(score.where, std::find(where.begin(), where.end(), variable) != where.end());
@@ -299,11 +313,11 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
     }
   }
   add_shrink(outcome, score);
-  if (verdict.verdict == "failed") ++score.failed;
+  if (!verdict.verdict) ++score.failed;
 }
 
 void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
-  std::optional<std::string> truth = "none";
+  std::optional<std::string> truth = std::string(kNone);
   if (outcome.causes.size() == 1) truth = outcome.causes.front().id;
   if (outcome.causes.size() > 1) truth.reset();
   auto row =
@@ -319,7 +333,7 @@ void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
     ++row->named[found];
     return;
   }
-  ++row->said[verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id];
+  ++row->said[verdict.effects.empty() ? verdict_word(verdict) : verdict.effects.front().id];
 }
 
 }  // namespace
@@ -382,9 +396,9 @@ BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
 VerdictWithout verdict_without(const BlindOutcome& outcome) {
   if (!outcome.left_out) throw std::logic_error("a case that was not diagnosed without its effect");
   const BlindVerdict& without = *outcome.left_out;
-  if (without.verdict == "none") return VerdictWithout::none;
-  if (without.verdict == "unknown") return VerdictWithout::unknown;
-  if (without.verdict != "effect") return VerdictWithout::failed;
+  if (!without.verdict) return VerdictWithout::failed;
+  if (without.verdict == Verdict::none) return VerdictWithout::none;
+  if (without.verdict == Verdict::unknown) return VerdictWithout::unknown;
   // Effects that the full diagnosis calls equivalent to the truth on these data may replace it.
   const std::set<std::string> named = named_by(outcome);
   const bool truth_named = named.contains(true_class(outcome));

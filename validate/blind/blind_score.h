@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnose/result/explanation.h"
 #include "validate/blind/blind_sequence.h"
 #include "validate/blind/case/blind_case.h"
 #include "validate/blind/case/everyday_case.h"
@@ -33,9 +34,9 @@ struct BlindRanked {
   std::optional<double> gap_after;
 };
 
-/// The content of a diagnosis.json; "failed" with `why` if there is none.
+/// The content of a diagnosis.json; no verdict, and `why`, if the diagnosis failed.
 struct BlindVerdict {
-  std::string verdict;  ///< none, effect, unknown, failed
+  std::optional<diagnose::Verdict> verdict;
   std::string why;
   std::vector<BlindNamed> effects;
   std::vector<BlindRanked> ranking;
@@ -44,6 +45,9 @@ struct BlindVerdict {
   double gap_before = 0.0, gap_after = 0.0, gap_error = 0.0;
   BlindSequence sequence;
 };
+
+/// In files: the id of the verdict, or "failed".
+std::string verdict_word(const BlindVerdict& verdict);
 
 /// InputError if the file is not a diagnosis.
 BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);

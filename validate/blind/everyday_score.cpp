@@ -109,7 +109,7 @@ bool is_fair(const BlindOutcome& outcome, const EverydaySaying& saying) {
 std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
   const BlindVerdict& verdict = outcome.verdict;
   const EverydayClass kind = outcome.everyday->kind;
-  if (verdict.verdict == "effect" && !verdict.effects.empty()) {
+  if (verdict.verdict == diagnose::Verdict::effect && !verdict.effects.empty()) {
     const BlindNamed& first = verdict.effects.front();
     bool right = false;
     for (std::size_t c = 0; kind != EverydayClass::outside && c < outcome.causes.size(); ++c) {
@@ -118,7 +118,7 @@ std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
     return {std::min(1.0, std::max(first.probability, first.joint)), right};
   }
   if (kind == EverydayClass::imperfect) return {std::min(1.0, verdict.none + verdict.unknown), true};
-  const bool unknown = verdict.verdict == "unknown";
+  const bool unknown = verdict.verdict == diagnose::Verdict::unknown;
   return {unknown ? verdict.unknown : verdict.none, unknown && kind == EverydayClass::outside};
 }
 
@@ -207,7 +207,7 @@ BlindShare sum_of(const SharesByCase& shares, const std::vector<std::string>& cl
 }
 
 EverydaySaying said_by_diagnosis(const BlindVerdict& verdict) {
-  EverydaySaying saying{verdict.verdict == "failed", verdict.verdict == "effect", {}};
+  EverydaySaying saying{!verdict.verdict, verdict.verdict == diagnose::Verdict::effect, {}};
   const auto effect = [&](const std::string& id) {
     return std::find_if(verdict.effects.begin(), verdict.effects.end(),
                         [&](const BlindNamed& one) { return one.id == id; });
@@ -229,7 +229,7 @@ EverydaySaying said_by_diagnosis(const BlindVerdict& verdict) {
 }
 
 EverydaySaying said_by_forward_selection(const BlindVerdict& verdict) {
-  EverydaySaying saying{verdict.verdict == "failed", false, {}};
+  EverydaySaying saying{!verdict.verdict, false, {}};
   const BlindRanked* first = least_gap(verdict, 1, "");
   const double before = verdict.gap_before * verdict.gap_before - 1.0;
   if (saying.failed || first == nullptr || verdict.gap_before - 1.0 <= kClearErrors * verdict.gap_error) return saying;
@@ -268,7 +268,7 @@ EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
         score.remainder_error.add(*outcome.verdict.sequence.remainder - outcome.everyday->remainder);
       }
     } else {
-      add(score.unknown[of][strength], outcome.verdict.verdict == "unknown");
+      add(score.unknown[of][strength], outcome.verdict.verdict == diagnose::Verdict::unknown);
     }
     if (of == "dirt" && claims_half(said)) add(score.fair_claim, is_fair(outcome, said));
     if (outcome.seconds) {
@@ -282,7 +282,7 @@ EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
     }
     stated[of].push_back(stated_and_right(outcome));
     stated["all"].push_back(stated[of].back());
-    by_verdict[outcome.verdict.verdict].push_back(stated[of].back());
+    by_verdict[verdict_word(outcome.verdict)].push_back(stated[of].back());
     add_coverage(outcome, score);
   }
   for (const auto& [kind, list] : stated) score.calibration[kind] = calibration_of(list);

@@ -107,7 +107,6 @@ std::optional<double> seconds_in(const fs::path& folder) {
 BlindVerdict verdict_in(const fs::path& folder, const std::vector<std::string>& told) {
   BlindVerdict verdict;
   if (fs::exists(folder / kFailure)) {
-    verdict.verdict = "failed";
     verdict.why = base::read_file(folder / kFailure);
   } else {
     verdict = read_blind_verdict(folder / kDiagnosis);

@@ -9,8 +9,8 @@
 /// the effect of its uncertainty, and the part of its value beyond noise (q numbers in v). b is how far the term is
 /// believed: 1 for p1, p2; usual² / (usual² + s²) for a radial term, whose part s at the image's corner is N(0, usual²)
 /// over lenses. A straight lens has small high terms: of k2 and k3, usual is at most `of_extent` times the lens's
-/// extent e, the sum of the sizes at the corner of the radial terms that were kept and, where k1 was left out, of what
-/// k1 may be (its size and two standard deviations). k1 itself defines the extent and is not bounded by it.
+/// extent e, the sum of the sizes at the corner of the radial terms that were kept and, where k1 was left out, of the
+/// largest likely k1 (its size and two standard deviations). k1 itself defines the extent and is not bounded by it.
 ///
 /// High terms go with k1 in lenses as they are. They do not in images that a camera has straightened itself, or in a
 /// lens whose k1 happens to be near zero with large k2 and k3: there the intervals may be too narrow.

@@ -37,8 +37,8 @@ struct DiscSquares {
 inline constexpr int kMostBrightNeighbours = 3;
 
 /// The contrast of a disc of given radius with its surroundings, at each position of an image. The mean of the inner
-/// square less the brightest but `bright_neighbours` (0 to 3) of the means of the squares around it, of what of them
-/// lies in the image; 0 where it is not above, where more of them are outside, and outside the region. `values` and the
+/// square less the brightest but `bright_neighbours` (0 to 3) of the means of the squares around it, each over its part
+/// within the image; 0 where it is not above, where more of them are outside, and outside the region. `values` and the
 /// result are of single precision.
 cv::Mat disc_response(const cv::Mat& values, const cv::Rect& region, const DiscSquares& squares, int bright_neighbours,
                       base::Simd simd = base::Simd::best);

@@ -11,10 +11,10 @@
 ///
 /// D_side I is the mean of the left and right neighbours minus the pixel, and so on: any symmetric mask of 3 x 3
 /// pixels. C is the contrast and E how much of the pixel the bright side covers, after the mosaic where the window was
-/// fitted with a response. `light` is the code, or its light by the sRGB curve (which differs from ITU-R BT.709 by what
-/// t and w take up). The fourteen terms are the same in all windows and follow from them by least squares, together
-/// with the windows' own parameters. Nothing is assumed of the camera: not which mosaic or interpolation, nor that
-/// there is one.
+/// fitted with a response. `light` is the code, or its light by the sRGB curve (t and w absorb
+/// its difference from that of ITU-R BT.709). The fourteen terms are the same in all windows and follow from them by
+/// least squares, together with the windows' own parameters. Nothing is assumed of the camera: not which mosaic or
+/// interpolation, nor that there is one.
 ///
 /// A window is fitted without what a known response adds (added_by()) to a model of its own, or by a model that has the
 /// response in it: FittedWindow says which.

@@ -49,11 +49,11 @@ struct MarkerFit {
   cv::Vec3d shape;          ///< the elements uu, uv, vv of M (1/px)
   double amplitude = 0.0;   ///< B - b, in units of the signal
   double background = 0.0;
-  /// Second moments uu, uv, vv (px²) about the centre, of what exceeds the background in a disc a little larger
-  /// than the marker. They are those of the pixels, not of the model.
+  /// Second moments uu, uv, vv (px²) about the centre, weighted by the signal above the background, in a disc a little
+  /// larger than the marker. They are those of the pixels, not of the model.
   cv::Vec3d moments;
-  /// The centroid of what stands out there, less the centre (px): how far light from one side or an uneven background
-  /// shifts a centroid. Of a centroid: less that with nearly equal weights over the marker.
+  /// The centroid of that signal, less the centre (px): how far light from one side or an uneven background shifts a
+  /// centroid. Where the centre is a centroid: less the one with nearly equal weights over the marker.
   cv::Point2d light_px;
   double slope_u = 0.0, slope_v = 0.0;  ///< g, in units of the signal per px
   double blur_px = 0.0;                 ///< sigma

@@ -18,14 +18,14 @@ constexpr double kTimesUsual = 5.0, kNormalOfMedian = 1.48;
 constexpr std::size_t kFewestChanges = 10, kFewestPoints = 40;
 constexpr double kShortestPath = 2.0;  // diameters
 
-/// First and last point of a way: x rises or falls throughout, but for noise.
-struct Way {
+/// First and last point of a pass: x rises or falls throughout, but for noise.
+struct Pass {
   std::size_t first = 0, last = 0;
 };
 
-/// A way ends where x turns back by half a diameter from its farthest place.
-std::vector<Way> ways_of(const std::vector<LitPoint>& points, double diameter_m) {
-  std::vector<Way> ways;
+/// A pass ends where x turns back by half a diameter from its farthest place.
+std::vector<Pass> passes_of(const std::vector<LitPoint>& points, double diameter_m) {
+  std::vector<Pass> passes;
   std::size_t first = 0, farthest = 0;
   int direction = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -36,13 +36,13 @@ std::vector<Way> ways_of(const std::vector<LitPoint>& points, double diameter_m)
       continue;
     }
     if (direction * (points[farthest].x_m - points[i].x_m) < kNearest * diameter_m) continue;
-    ways.push_back({first, farthest});
+    passes.push_back({first, farthest});
     first = farthest;
     farthest = i;
     direction = -direction;
   }
-  if (!points.empty()) ways.push_back({first, points.size() - 1});
-  return ways;
+  if (!points.empty()) passes.push_back({first, points.size() - 1});
+  return passes;
 }
 
 struct Change {
@@ -50,14 +50,14 @@ struct Change {
   double size = 0.0;   ///< of ln(level), towards larger x
 };
 
-std::vector<Change> changes_along(const std::vector<LitPoint>& points, const Way& way, double diameter_m) {
+std::vector<Change> changes_along(const std::vector<LitPoint>& points, const Pass& pass, double diameter_m) {
   std::vector<Change> changes;
   std::vector<double> logs;
   for (const LitPoint& point : points) logs.push_back(std::log(point.level));
-  for (std::size_t i = way.first; i <= way.last; ++i) {
+  for (std::size_t i = pass.first; i <= pass.last; ++i) {
     double before = 0.0, after = 0.0;
     std::size_t many_before = 0, many_after = 0;
-    for (std::size_t k = way.first; k <= way.last; ++k) {
+    for (std::size_t k = pass.first; k <= pass.last; ++k) {
       const double off = (points[k].x_m - points[i].x_m) / diameter_m;
       if (std::abs(off) < kNearest || std::abs(off) > kFarthest) continue;
       (off < 0.0 ? before : after) += logs[k];
@@ -72,11 +72,11 @@ std::vector<Change> changes_along(const std::vector<LitPoint>& points, const Way
 }  // namespace
 
 std::vector<LightEdge> edges_of_light(const std::vector<LitPoint>& points, double diameter_m) {
-  const std::vector<Way> ways = ways_of(points, diameter_m);
+  const std::vector<Pass> passes = passes_of(points, diameter_m);
   std::vector<std::vector<Change>> changes;
   std::vector<double> sizes, off;
-  for (const Way& way : ways) {
-    changes.push_back(changes_along(points, way, diameter_m));
+  for (const Pass& pass : passes) {
+    changes.push_back(changes_along(points, pass, diameter_m));
     for (const Change& change : changes.back()) sizes.push_back(change.size);
   }
   if (sizes.size() < kFewestChanges) return {};
@@ -84,11 +84,11 @@ std::vector<LightEdge> edges_of_light(const std::vector<LitPoint>& points, doubl
   for (const double size : sizes) off.push_back(std::abs(size - median));
   const double least = std::max(-std::log(1.0 - kLeastFall), kTimesUsual * kNormalOfMedian * median_of(off));
   std::vector<LightEdge> edges;
-  for (std::size_t w = 0; w < ways.size(); ++w) {
-    for (const Change& change : changes[w]) {
+  for (std::size_t p = 0; p < passes.size(); ++p) {
+    for (const Change& change : changes[p]) {
       const double here_m = points[change.at].x_m;
       if (std::abs(change.size - median) < least) continue;
-      const bool largest = std::ranges::all_of(changes[w], [&](const Change& other) {
+      const bool largest = std::ranges::all_of(changes[p], [&](const Change& other) {
         const bool near = std::abs(points[other.at].x_m - here_m) <= diameter_m;
         return !near || std::abs(other.size) < std::abs(change.size) || other.at == change.at ||
                (std::abs(other.size) == std::abs(change.size) && other.at > change.at);
@@ -96,7 +96,7 @@ std::vector<LightEdge> edges_of_light(const std::vector<LitPoint>& points, doubl
       if (!largest) continue;
       LightEdge edge{here_m, 1.0 - std::exp(-std::abs(change.size)), change.size < 0.0, points[change.at].frame,
                      points[change.at].frame};
-      for (std::size_t k = ways[w].first; k <= ways[w].last; ++k) {
+      for (std::size_t k = passes[p].first; k <= passes[p].last; ++k) {
         if (std::abs(points[k].x_m - here_m) > kNearest * diameter_m) continue;
         edge.first_frame = std::min(edge.first_frame, points[k].frame);
         edge.last_frame = std::max(edge.last_frame, points[k].frame);

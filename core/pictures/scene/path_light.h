@@ -26,8 +26,8 @@ struct LightEdge {
 /// The edges that a marker of a diameter crosses, in the order of the frames: one for each crossing.
 ///
 /// A frame's change is the mean of ln(level) over the frames from half a diameter to one and a half beyond it, minus
-/// that of those before it on the same way (a way ends where the marker turns). An edge is the largest change within a
-/// diameter either way, of 10 % or more, five times the usual one (1.48 times the median size of the differences from
+/// that of those before it in the same pass (a pass ends where the marker turns). An edge is the largest change within
+/// a diameter either way, of 10 % or more, five times the usual one (1.48 times the median size of the differences from
 /// the median change, which is that of a gradient).
 std::vector<LightEdge> edges_of_light(const std::vector<LitPoint>& points, double diameter_m);
 

@@ -22,6 +22,11 @@ double sway_seen(const double* p, const GliderConstants& glider, double x_m, dou
   return seen_m + size * std::sin(2.0 * std::numbers::pi * p[1] * t_s + p[4]);
 }
 
+/// The acceleration w² A of a table that moves by as much.
+double as_vibration(double amplitude_m, double f_hz) {
+  return amplitude_m * std::pow(2.0 * std::numbers::pi * f_hz, 2);
+}
+
 void sway_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto f_hz = sizes.of("f_hz"), along_m = sizes.of("amplitude_m"), in_px = sizes.of("amplitude_px");
   if (!f_hz || !(along_m || in_px)) {
@@ -48,6 +53,11 @@ EffectInfo camera_motion() {
       .meaning = "the fixed scene moves by this amplitude, with frequency f",
       .search = Search::wave,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {.id = ids::base_vibration, .size = as_vibration, .phase_rad = std::numbers::pi},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "amplitude_m", .absent = 0.0, .low = 0.0, .high = 0.05, .step = 1e-8},

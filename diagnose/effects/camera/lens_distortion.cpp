@@ -24,6 +24,11 @@ EffectInfo lens_distortion() {
       .meaning = "x becomes x (1 + k (x − x_c)²)",
       .search = Search::shape,
       .both_signs = true,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       // The axis is in the middle of the images, which show the motion in their middle.

@@ -1,6 +1,7 @@
 /// A table or track that shakes: a force m A sin(2 pi f t + phase), with a phase of its own in each motion.
 #include "diagnose/effects/effect.h"
 
+#include <cmath>
 #include <numbers>
 
 namespace glidelab::diagnose::effects {
@@ -18,6 +19,11 @@ double vibration_rate(const double* p, double) {
   return kTurnOfWave * (2.0 * std::numbers::pi * p[1]);
 }
 
+/// The displacement a/w² of the table.
+double as_sway(double a_m_s2, double f_hz) {
+  return a_m_s2 / std::pow(2.0 * std::numbers::pi * f_hz, 2);
+}
+
 }  // namespace
 
 EffectInfo base_vibration() {
@@ -30,6 +36,11 @@ EffectInfo base_vibration() {
       .meaning = "an acceleration of amplitude a and frequency f",
       .search = Search::wave,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {.id = ids::camera_motion, .size = as_sway, .phase_rad = std::numbers::pi},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},

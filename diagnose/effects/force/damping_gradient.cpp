@@ -28,6 +28,11 @@ EffectInfo damping_gradient() {
       .meaning = "K becomes K (1 + b (x − x_mid)), x_mid the middle of the data",
       .search = Search::shape,
       .both_signs = true,
+      .drag = Drag::viscous,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters =

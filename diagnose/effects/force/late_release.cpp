@@ -21,6 +21,11 @@ EffectInfo late_release() {
       .meaning = "the hand pushes until t_r",
       .search = Search::pushes,
       .both_signs = true,
+      .drag = Drag::none,
+      .touch = Touch::hand,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = -3.2,
       // A push that lasts for half a second follows whatever else is missing there.

@@ -35,6 +35,11 @@ EffectInfo load_independent_friction() {
       .meaning = "the same friction force at every mass",
       .search = Search::amplitude,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = touched,
       .log_odds_beside_remainder = 0.0,
       .parameters =

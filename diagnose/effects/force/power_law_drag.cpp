@@ -33,6 +33,11 @@ EffectInfo power_law_drag() {
       .meaning = "K v becomes K v |v|^(n − 1), v in m/s",
       .search = Search::amplitude,
       .both_signs = true,
+      .drag = Drag::of_air,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = of_any_power,
       .log_odds_beside_remainder = 0.0,
       .parameters =

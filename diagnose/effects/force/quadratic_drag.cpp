@@ -32,6 +32,11 @@ EffectInfo quadratic_drag() {
       .meaning = "a force −c v |v|",
       .search = Search::amplitude,
       .both_signs = false,
+      .drag = Drag::of_air,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = against_air,
       .log_odds_beside_remainder = 0.0,
       .parameters =

@@ -34,6 +34,11 @@ EffectInfo stribeck() {
       .meaning = "µ becomes µ (1 + (s − 1) exp(−(v / v_s)²))",
       .search = Search::shape,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters =

@@ -34,6 +34,11 @@ EffectInfo tether() {
       .meaning = "a force −k (x − x_t) beyond x_t",
       .search = Search::shape,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::in_one_place,
+      .mirror = {.id = ids::end_stop, .beyond_middle = true},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = touched,
       .log_odds_beside_remainder = 0.0,
       .parameters =

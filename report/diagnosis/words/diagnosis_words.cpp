@@ -8,6 +8,7 @@
 
 #include "base/math/angles.h"
 #include "base/text/number_text.h"
+#include "diagnose/effects/effect_list.h"
 #include "diagnose/result/joined_ids.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"
@@ -26,18 +27,6 @@ std::vector<std::string> ids_of(const diagnose::Explanation& explanation) {
 }
 
 }  // namespace
-
-std::string verdict_id(diagnose::Verdict verdict) {
-  switch (verdict) {
-    case diagnose::Verdict::none:
-      return "none";
-    case diagnose::Verdict::effect:
-      return "effect";
-    case diagnose::Verdict::unknown:
-      return "unknown";
-  }
-  return {};
-}
 
 std::string explanation_id(const diagnose::Explanation& explanation) {
   return diagnose::joined_ids(ids_of(explanation));
@@ -164,8 +153,9 @@ struct Sentence {
   std::string operator()(const diagnose::NoInclination& of) const {
     return fmt::format(
         "Set{} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): effects that show "
-        "only in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
-        ups(of.groups), of.groups.size() > 1 ? "have" : "has");
+        "only in the inclination ({}, {}, {}) cannot be seen there.",
+        ups(of.groups), of.groups.size() > 1 ? "have" : "has", diagnose::ids::frame_rate_error,
+        diagnose::ids::scale_error, diagnose::ids::direction_asymmetry);
   }
   std::string operator()(const diagnose::SuspectedFall& of) const {
     return fmt::format(
@@ -196,10 +186,11 @@ struct Sentence {
   }
   std::string operator()(const diagnose::FallsThroughAir& of) const {
     constexpr double kClearly = 2.3;  // log evidence: ten to one
-    std::string words =
+    std::string words = fmt::format(
         "In air, a body that falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
         "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, exclude this "
-        "drag (--without quadratic_drag).";
+        "drag (--without {}).",
+        diagnose::ids::quadratic_drag);
     if (of.over_viscous && *of.over_viscous > kClearly) {
       words += " The positions alone also prefer it to a viscous drag.";
     } else if (of.over_viscous) {
@@ -317,8 +308,8 @@ struct Sentence {
   std::string operator()(const diagnose::TableOfLines& of) const {
     return fmt::format(
         "The table of {} lines states no errors: they are estimated from the scatter of the lines. It states no speeds "
-        "either, so effects that depend on the speed (quadratic_drag, power_law_drag, stribeck) cannot be examined.",
-        of.lines);
+        "either, so effects that depend on the speed ({}, {}, {}) cannot be examined.",
+        of.lines, diagnose::ids::quadratic_drag, diagnose::ids::power_law_drag, diagnose::ids::stribeck);
   }
 };
 

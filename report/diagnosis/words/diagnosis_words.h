@@ -1,5 +1,5 @@
-/// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for readers), its
-/// notes (diagnose/result/note.h) as sentences.
+/// Words of a diagnosis: its explanations as ids (for files and terminals) and as names (for readers), its notes
+/// (diagnose/result/note.h) as sentences.
 #pragma once
 
 #include <string>
@@ -9,9 +9,6 @@
 #include "diagnose/result/note.h"
 
 namespace glidelab::report {
-
-/// "none", "effect", "unknown", as in diagnosis.json.
-std::string verdict_id(diagnose::Verdict verdict);
 
 /// "none", "scale_error", "scale_error + tether", "unknown", "scale_error + unknown".
 std::string explanation_id(const diagnose::Explanation& explanation);

@@ -93,6 +93,40 @@ TEST_CASE("every effect has words, a name, a twin or a reason for none, and what
   CHECK(words.size() == diagnose::kEffects);
 }
 
+TEST_CASE("an effect's kin are what its law and its search say") {
+  using diagnose::Search;
+  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
+    INFO(effect.id);
+    if (effect.drag != diagnose::Drag::none) CHECK(effect.law.resistance != nullptr);
+    if (effect.touch != diagnose::Touch::nothing) CHECK(effect.law.force_n != nullptr);
+    if (effect.among_clips.of == diagnose::AmongClips::Of::friction) CHECK(effect.law.friction != nullptr);
+    if (effect.among_clips.of == diagnose::AmongClips::Of::drag) CHECK(effect.law.resistance != nullptr);
+    CHECK((effect.search == Search::noise) == (effect.point_scatter.parameters > 0));
+    CHECK(effect.point_scatter.key.empty() == (effect.point_scatter.parameters == 0));
+  }
+}
+
+TEST_CASE("the mirror of an effect has it for a mirror, and its size there and back is the same") {
+  int mirrors = 0;
+  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
+    if (effect.mirror.id.empty()) continue;
+    INFO(effect.id);
+    const diagnose::EffectInfo& other = diagnose::effect_of(effect.mirror.id);
+    CHECK(other.mirror.id == effect.id);
+    CHECK(other.mirror.beyond_middle == effect.mirror.beyond_middle);
+    CHECK(other.search == effect.search);
+    REQUIRE(effect.parameters.size() >= 2);
+    // Half a turn and half a turn are a whole one.
+    CHECK(std::cos(effect.mirror.phase_rad + other.mirror.phase_rad) == Approx(1.0));
+    CHECK((effect.mirror.size == nullptr) == (other.mirror.size == nullptr));
+    if (effect.mirror.size != nullptr) {
+      CHECK(other.mirror.size(effect.mirror.size(0.3, 2.5), 2.5) == Approx(0.3));
+    }
+    ++mirrors;
+  }
+  CHECK(mirrors == 4);
+}
+
 TEST_CASE("every parameter of an effect has a key with its unit, a range and a step that resolves it") {
   for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
     INFO(effect.id);

@@ -27,6 +27,11 @@ EffectInfo toy_effect() {
       .meaning = "a force −k x",
       .search = Search::amplitude,
       .both_signs = false,
+      .drag = Drag::none,
+      .touch = Touch::nothing,
+      .mirror = {},
+      .among_clips = {},
+      .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters =

@@ -342,7 +342,7 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
   validate::BlindOutcome outcome;
   outcome.kind = validate::BlindKind::single;
   outcome.causes = {{kEvil, 1.0, {}, kEvil, 20.0}};
-  outcome.verdict.verdict = outcome.verdict.why = kEvil;
+  outcome.verdict.why = kEvil;
   outcome.verdict.where = {kEvil};
   validate::BlindOutcome named = outcome;
   named.verdict.effects = {{kEvil, 0.9, {kEvil}}};
@@ -371,7 +371,7 @@ TEST_CASE("the page of a challenge's score has every name from a file as text") 
 TEST_CASE("the page of everyday cases has every name from a file as text") {
   validate::BlindOutcome outcome;
   outcome.causes = {{kEvil, 1.0, {}, kEvil, 20.0}};
-  outcome.verdict.verdict = outcome.verdict.why = kEvil;
+  outcome.verdict.why = kEvil;
   outcome.verdict.effects = {{kEvil, 0.9, {kEvil}}};
   outcome.verdict.sequence.explained = {{kEvil, 0.7}};
   outcome.everyday.emplace();

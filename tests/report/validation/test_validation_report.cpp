@@ -44,6 +44,7 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(first.find("fit of the whole motion") != std::string::npos);
   CHECK(first.find("K/m (1/s)") != std::string::npos);
   CHECK(first.find("m1 (0.335 kg, 4°)") != std::string::npos);
+  CHECK(first.find("m1 (0.335 kg, 4°):\n") != std::string::npos);
   CHECK(first.find("K/m (1/s)    2.76810 ± 0.00040   2.76800\n") != std::string::npos);
   CHECK(first.find("µ          0.007120 ± 0.000020  0.007100\n") != std::string::npos);
   CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
@@ -52,6 +53,26 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
             "3 of 4 recovered values lie within two standard deviations of the truth; the largest error: K/m of m1 "
             "with the lines of the phase diagram, 3.0 standard deviations.") != std::string::npos);
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
+}
+
+TEST_CASE("of several configurations the middle mass that was recovered comes first, and all follow") {
+  validate::Comparison comparison;
+  const auto add = [&](const char* name, double mass_kg, std::optional<double> value) {
+    comparison.quantities.push_back(quantity(name, "trajectory", "k_over_m_1_s", 2.0, value, 0.001));
+    comparison.quantities.back().mass_kg = mass_kg;
+  };
+  add("light", 0.2, 2.001);
+  add("lost", 0.25, std::nullopt);
+  add("heavy", 0.8, 2.003);
+  add("middle", 0.4, 2.002);
+  const std::string text = report::comparison_text(comparison), first = before_full(text);
+  INFO(first);
+  CHECK(first.find("\n\nmiddle (0.4 kg, 4°), one of 3 configurations:\nquantity") != std::string::npos);
+  CHECK(first.find("2.0020 ± 0.0010") != std::string::npos);
+  CHECK(first.find("2.0010") == std::string::npos);
+  for (const char* value : {"2.0010", "2.0020", "2.0030", "lost (0.25 kg, 4°)"}) {
+    CHECK(text.find(value, first.size()) != std::string::npos);
+  }
 }
 
 TEST_CASE("a comparison begins with an outside estimator's failure, and calls it by its name") {

@@ -53,7 +53,7 @@ validate::BlindOutcome outcome(validate::BlindKind kind, const std::string& trut
   validate::BlindOutcome one;
   one.kind = kind;
   if (!truth.empty()) one.causes.push_back({truth, 1.0, {}, "x_m", gain});
-  one.verdict = validate::read_blind_verdict(temp / "diagnosis.json");
+  if (verdict != "failed") one.verdict = validate::read_blind_verdict(temp / "diagnosis.json");
   return one;
 }
 
@@ -208,11 +208,12 @@ TEST_CASE("a truth is written after its diagnosis, a second run goes on, and ano
   const auto first = validate::run_blind(options, temp / "out", diagnoser);
   CHECK(calls == 3);
   CHECK(fs::exists(temp / "out" / "truth" / "0002.json"));
-  CHECK(first[1].verdict.verdict == "failed");
+  CHECK_FALSE(first[1].verdict.verdict);
+  CHECK(validate::verdict_word(first[1].verdict) == "failed");
   options.cases = 4;
   const auto more = validate::run_blind(options, temp / "out", diagnoser);
   CHECK(calls == 4);
-  CHECK(more[1].verdict.verdict == "failed");
+  CHECK_FALSE(more[1].verdict.verdict);
   base::write_file(temp / "out" / "truth" / "0002.json", "{}\n");
   CHECK_THROWS_AS(validate::run_blind(options, temp / "out", diagnoser), base::InputError);
   options.seed = 10;
@@ -235,12 +236,12 @@ TEST_CASE("images tell a camera that shakes from a table that does, and what a f
   lossy.filmed = true;
   CHECK(validate::score_blind({lossy}).false_alarm.yes == 1);
   validate::set_aside({"compression"}, lossy.verdict);
-  CHECK(lossy.verdict.verdict == "none");
+  CHECK(lossy.verdict.verdict == diagnose::Verdict::none);
   CHECK(lossy.verdict.none == 0.9);
   CHECK(validate::score_blind({lossy}).false_alarm.yes == 0);
   auto other = outcome(BlindKind::none, "", 0.0, "effect", "stribeck", 0.9);
   validate::set_aside({"compression"}, other.verdict);
-  CHECK(other.verdict.verdict == "effect");
+  CHECK(other.verdict.verdict == diagnose::Verdict::effect);
 }
 
 TEST_CASE("a score tells whether what is outside is looked for in the right variable, and whether that is the first") {
@@ -292,7 +293,7 @@ TEST_CASE("the methods beside the diagnosis take the largest gain, and the one t
     validate::BlindOutcome one;
     one.kind = truth.empty() ? BlindKind::none : truth.size() == 1 ? BlindKind::single : BlindKind::pair;
     for (const std::string& id : truth) one.causes.push_back({id, 1.0, {}, "x_m", 100.0});
-    one.verdict.verdict = "effect";
+    one.verdict.verdict = diagnose::Verdict::effect;
     one.verdict.points = points;
     one.verdict.ranking = ranking;
     const auto score = validate::score_blind({one});
@@ -325,6 +326,23 @@ TEST_CASE("a cause that is drawn as one outside the list may be called by what t
   CHECK(score.recognised.at("strong").yes == 2);
   CHECK(score.wrong_name.yes == 2);
   CHECK(score.calibration_error == Approx(0.4).margin(1e-6));  // 0.9 stated, half of them right
+}
+
+TEST_CASE("a diagnosis' verdict is one of three words, and any other is refused") {
+  tests::TempDir temp;
+  using diagnose::Verdict;
+  for (const Verdict verdict : {Verdict::none, Verdict::effect, Verdict::unknown}) {
+    const std::string id(diagnose::verdict_id(verdict));
+    base::write_file(temp / "diagnosis.json", diagnosis_text(id, "tether", 0.9));
+    const validate::BlindVerdict read = validate::read_blind_verdict(temp / "diagnosis.json");
+    CHECK(read.verdict == verdict);
+    CHECK(validate::verdict_word(read) == id);
+  }
+  for (const char* word : {"failed", "None", ""}) {
+    base::write_file(temp / "diagnosis.json", diagnosis_text(word, "tether", 0.9));
+    CHECK_THROWS_AS(validate::read_blind_verdict(temp / "diagnosis.json"), base::InputError);
+  }
+  CHECK(validate::verdict_word({}) == "failed");
 }
 
 TEST_CASE("a case that could not be diagnosed is right by no method, though nothing was withheld in it") {

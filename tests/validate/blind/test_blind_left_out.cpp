@@ -21,14 +21,14 @@ constexpr const char* kNothingFound =
     R"({"format": 1, "verdict": "none", "points": 1000, "effects": [], "probability": {"none": 0.9, "unknown": 0.1},
         "ranking": [], "where": {"regions": []}, "gap": null})";
 
-validate::BlindOutcome left_out(const std::string& effect, const std::string& verdict,
+validate::BlindOutcome left_out(const std::string& effect, diagnose::Verdict verdict,
                                 const std::vector<std::string>& where = {}) {
   validate::BlindOutcome outcome;
   outcome.kind = validate::BlindKind::single;
   validate::BlindCause cause;
   cause.id = effect;
   outcome.causes = {cause};
-  outcome.verdict.verdict = "effect";
+  outcome.verdict.verdict = diagnose::Verdict::effect;
   outcome.verdict.effects = {{effect, 0.9, {"power_law_drag"}}};
   outcome.left_out.emplace();
   outcome.left_out->verdict = verdict;
@@ -39,12 +39,12 @@ validate::BlindOutcome left_out(const std::string& effect, const std::string& ve
 }  // namespace
 
 TEST_CASE("of what is unknown without its effect the first region counts, where an effect has a variable") {
-  std::vector<validate::BlindOutcome> outcomes = {left_out("track_bow", "unknown", {"x_m", "v_m_s"}),
-                                                  left_out("track_bow", "unknown", {"v_m_s", "x_m"}),
-                                                  left_out("track_bow", "unknown"),
-                                                  left_out("late_release", "unknown", {"clip"}),
-                                                  left_out("scale_error", "unknown", {"x_m"}),
-                                                  left_out("track_bow", "none")};
+  std::vector<validate::BlindOutcome> outcomes = {left_out("track_bow", diagnose::Verdict::unknown, {"x_m", "v_m_s"}),
+                                                  left_out("track_bow", diagnose::Verdict::unknown, {"v_m_s", "x_m"}),
+                                                  left_out("track_bow", diagnose::Verdict::unknown),
+                                                  left_out("late_release", diagnose::Verdict::unknown, {"clip"}),
+                                                  left_out("scale_error", diagnose::Verdict::unknown, {"x_m"}),
+                                                  left_out("track_bow", diagnose::Verdict::none)};
   const validate::BlindScore score = validate::score_blind(outcomes);
   CHECK(score.left_out_where.of == 4);
   CHECK(score.left_out_where.yes == 2);
@@ -53,7 +53,7 @@ TEST_CASE("of what is unknown without its effect the first region counts, where 
 }
 
 TEST_CASE("a name in place of the effect is its equal, another, or a sure one") {
-  validate::BlindOutcome outcome = left_out("quadratic_drag", "effect");
+  validate::BlindOutcome outcome = left_out("quadratic_drag", diagnose::Verdict::effect);
   outcome.left_out->effects = {{"power_law_drag", 0.9, {}}};
   CHECK(validate::verdict_without(outcome) == validate::VerdictWithout::equivalent);
   outcome.left_out->effects = {{"tether", 0.6, {}}};
@@ -94,7 +94,7 @@ TEST_CASE("a case whose diagnosis without its effect failed counts as failed, an
     const auto outcomes = validate::run_blind(options, temp / "out", diagnoser);
     REQUIRE(outcomes.size() == 1);
     REQUIRE(outcomes[0].left_out.has_value());
-    CHECK(outcomes[0].left_out->verdict == "failed");
+    CHECK_FALSE(outcomes[0].left_out->verdict);
     CHECK(outcomes[0].left_out->why == "made to fail");
     CHECK(validate::score_blind(outcomes).left_out.at(validate::VerdictWithout::unknown).of == 1);
     CHECK(validate::score_blind(outcomes).left_out.at(validate::VerdictWithout::failed).yes == 1);

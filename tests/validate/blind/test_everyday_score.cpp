@@ -26,7 +26,7 @@ BlindOutcome made(EverydayClass kind, bool strong, const std::vector<std::pair<s
     outcome.everyday->equals.emplace_back();
     outcome.everyday->remainder -= share;
   }
-  outcome.verdict.verdict = "unknown";
+  outcome.verdict.verdict = diagnose::Verdict::unknown;
   outcome.verdict.unknown = 1.0;
   return outcome;
 }
@@ -34,7 +34,7 @@ BlindOutcome made(EverydayClass kind, bool strong, const std::vector<std::pair<s
 /// Names with shares; the first one with a probability. A claim.
 void name(BlindOutcome& outcome, const std::vector<std::pair<std::string, double>>& names, double p,
           const std::vector<std::string>& equal = {}) {
-  outcome.verdict.verdict = "effect";
+  outcome.verdict.verdict = diagnose::Verdict::effect;
   outcome.verdict.unknown = 1.0 - p;
   for (const auto& [id, share] : names) {
     outcome.verdict.effects.push_back({id, p, outcome.verdict.effects.empty() ? equal : std::vector<std::string>{}, p});
@@ -120,11 +120,11 @@ TEST_CASE("calibration is that of each class: what is stated against what is rig
   imperfection.verdict.unknown = 0.5;
   outcomes.push_back(imperfection);
   auto outside = made(EverydayClass::outside, true, {{"cogging", 0.9}});  // none is wrong
-  outside.verdict.verdict = "none";
+  outside.verdict.verdict = diagnose::Verdict::none;
   outside.verdict.none = 0.85;
   outcomes.push_back(outside);
   auto failed = made(EverydayClass::one, true, {{"stribeck", 0.9}});
-  failed.verdict.verdict = "failed";
+  failed.verdict.verdict.reset();
   failed.seconds = 3.0;
   outcomes.front().seconds = 1.0;
   outcomes.push_back(failed);

@@ -55,7 +55,7 @@ double least_noise_m(const BlindCamera& camera, double v_m_s) {
   return core::least_centre_sd_px(disc, disc.radius_px + 3.0 * disc.blur_px + 2.0) / camera.px_per_m();
 }
 
-/// Additional errors observed in clips with nothing wrong (28 cases of seeds 3000 and 4000): differing pixels and the
+/// Additional errors observed in clips with nothing wrong (28 cases): differing pixels and the
 /// position between two of them, more so with a tone curve; the blocks of MJPEG (quality 86 to 91: 0.005 to 0.0075 px);
 /// H.264 (crf 14 to 20: 0.02 to 0.046 px, which last for about eight frames and so weigh twice as much on slow
 /// effects).
@@ -158,7 +158,7 @@ BlindScene draw_scene(BlindRandom& random, bool lossless) {
     design.k_n_s_m = log_uniform(random, 0.3, 1.4);
     design.mu = log_uniform(random, 0.002, 0.015);
     design.noise_sd_m = std::hypot(least_noise_m(scene.camera, 0.5), added_px(scene.camera) / scene.camera.px_per_m());
-    // Medians of the calibrations of sixteen such scenes with nothing wrong (seeds 3000 and 4000).
+    // Medians of the calibrations of sixteen such scenes with nothing wrong.
     design.calibration.scale_sd = 1.5e-4;
     design.calibration.bend_sd_1_m = 7e-4;
     design.calibration.cubic_sd_1_m2 = 4e-3;
