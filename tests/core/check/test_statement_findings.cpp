@@ -208,7 +208,12 @@ TEST_CASE("a marker of another size than stated is one finding for all clips, an
   CHECK_FALSE(size.by_scale);
   core::ClipCheck smeared = sized("a", 16.0, 10.0);
   smeared.blur_px = 12.0;  // its outline is the smear's
-  CHECK(of_sizes({smeared})[0].severity == core::Severity::change);
+  CHECK(of_sizes({smeared}).empty());
+  smeared.marker_px = 24.0;  // and more
+  REQUIRE(of_sizes({smeared}).size() == 1);
+  smeared.blur_px = 13.0;
+  smeared.marker_px = 6.0;  // no smear makes it smaller
+  REQUIRE(of_sizes({smeared}).size() == 1);
 }
 
 TEST_CASE("the size of a saturated marker, and of one that is no disc, is no measure of the scale to 15 %") {

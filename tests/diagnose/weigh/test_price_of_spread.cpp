@@ -30,7 +30,8 @@ struct Rolling {
   /// A fit of friction along x around a friction of this size.
   diagnose::MotionFit fit_with_friction(double mu) const {
     diagnose::FitPoint at = diagnose::with_effect(set, nominal, place_friction(), {}, {});
-    const auto& globals = diagnose::ParameterLayout(set, {place_friction()}).globals();
+    const diagnose::ParameterLayout layout(set, {place_friction()});
+    const auto& globals = layout.globals();
     for (std::size_t g = 0; g < globals.size(); ++g) {
       if (globals[g].kind == diagnose::ParameterLayout::Global::Kind::mu) at.global[static_cast<Eigen::Index>(g)] = mu;
     }

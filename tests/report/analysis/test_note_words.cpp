@@ -41,7 +41,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "times those along x"},
       {core::SlantedPath{12.34, 1.0236, false}, "this is the inclination (--incline 12.3, or -12.3 where x increases uphill)"},
       {core::SlantedPath{12.34, 1.0236, true}, "with the y axis"},
-      {core::SlantedPath{12.34, 1.0236, true}, "(--incline 77.7)"},
+      {core::SlantedPath{12.34, 1.0236, true}, "(--incline 77.7, or -77.7 where x increases uphill)"},
       {core::CountedAlongMotion{}, "its sign is reversed"},
       {core::RowsIncomplete{1}, "one row within the table lacks a time or x"},
       {core::RowsIncomplete{4}, "4 rows within the table lack a time or x"},

@@ -107,10 +107,10 @@ TEST_CASE("effects that look the same are named as one set, an effect that stand
       "(frame_rate_error)."));
   // Many that may be it are no list that anybody reads.
   diagnose::Diagnosis many = of;
-  for (int k = 0; k < 6; ++k) many.effects.front().alike.push_back({"tether", "a cable", 0.01});
+  for (int k = 0; k < 6; ++k) many.effects.front().alike.push_back({"tether", "a cable", 0.03});
   const std::string words = report::verdict_words(many);
   CHECK(contains(words, "one of these nine (98 % together)"));
-  CHECK(contains(words, "a cable (tether, 1 %), or one of four others."));
+  CHECK(contains(words, "a cable (tether, 3 %), or one of four others."));
   // Of 83 %, 82 % leave no doubt which.
   of.effects.front().probability = 0.82;
   of.effects.front().joint_probability = 0.83;
