@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 mkdir "$work/source"
-cp -r "$source"/{CMakeLists.txt,README.md,LICENSE,pyproject.toml,setup.py,python} "$work/source"
+cp -r "$source"/{CMakeLists.txt,README.md,LICENSE,pyproject.toml,setup.py,python,scenarios} "$work/source"
 GLIDELAB_BUILD=$build "$python" -m pip install --no-index --no-build-isolation --no-deps --disable-pip-version-check \
   --root-user-action=ignore --target "$work/installed" "$work/source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 cd "$work"
@@ -25,6 +25,9 @@ version=$(sed -n 's/^project(glidelab VERSION \([0-9.]*\).*/\1/p' "$source/CMake
 for file in py.typed _glidelab.pyi; do
   [ -e "$work/installed/glidelab/$file" ] || { echo "not installed: $file"; exit 1; }
 done
+said=$(PYTHONPATH=$work/installed "$python" -c "import glidelab; print(glidelab.scenarios_folder())")
+[ "$said" = "$work/installed/glidelab/scenarios" ] || { echo "the scenarios are in $said"; exit 1; }
+diff -r "$source/scenarios" "$said"
 # The bound on numpy is that of the pybind11 that made the module.
 PYTHONPATH=$work/installed "$python" -c "
 import glidelab._glidelab, importlib.metadata
