@@ -11,6 +11,8 @@ std::string_view key_of(OutsideFailure failure) {
   switch (failure) {
     case OutsideFailure::exit_status:
       return "exit_status";
+    case OutsideFailure::raised:
+      return "raised";
     case OutsideFailure::signal:
       return "signal";
     case OutsideFailure::time_out:
@@ -30,6 +32,8 @@ std::string words_of(OutsideFailure failure, std::size_t runs) {
   switch (failure) {
     case OutsideFailure::exit_status:
       return fmt::format("{} ended with an exit status other than 0", runs);
+    case OutsideFailure::raised:
+      return fmt::format("{} raised an exception", runs);
     case OutsideFailure::signal:
       return fmt::format("{} {} ended by a signal", runs, was);
     case OutsideFailure::time_out:
