@@ -122,11 +122,12 @@ class Blind(Result):
         shares.set_xlim(0.0, 100.0)
         shares.set_xlabel("cases (%)")
         kinds, verdicts, counts = self._counted()
+        most = max((count for of_kind in counts for count in of_kind), default=0)
         cases.imshow(counts, cmap="Blues", aspect="auto", vmin=0)
         for row, of_kind in enumerate(counts):
             for column, count in enumerate(of_kind):
                 cases.text(column, row, str(count), ha="center", va="center",
-                           color="white" if 2 * count > max(map(max, counts)) else "black")
+                           color="white" if 2 * count > most else "black")
         cases.set_xticks(range(len(verdicts)), verdicts)
         cases.set_yticks(range(len(kinds)), kinds)
         cases.set_xlabel("verdict")
