@@ -40,7 +40,7 @@ class BuildWithScenarios(build_py):
 
     def run(self):
         super().run()
-        if not self.editable_mode:  # then the checkout's are found
+        if not getattr(self, "editable_mode", False):  # then the checkout's are found
             shutil.copytree(ROOT / "scenarios", Path(self.build_lib) / "glidelab" / "scenarios", dirs_exist_ok=True)
 
 
