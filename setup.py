@@ -11,6 +11,7 @@ from pathlib import Path
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.command.build_py import build_py
 
 ROOT = Path(__file__).resolve().parent
 
@@ -32,6 +33,15 @@ class BuildWithCMake(build_ext):
         if len(modules) != 1:
             raise RuntimeError(f"{build}: found {len(modules)} modules, expected one")
         shutil.copy2(modules[0], target / Path(self.get_ext_fullpath(ext.name)).name)
+
+
+class BuildWithScenarios(build_py):
+    """The package's sources, and the scenarios, which lie outside of them."""
+
+    def run(self):
+        super().run()
+        if not getattr(self, "editable_mode", False):  # then the checkout's are found
+            shutil.copytree(ROOT / "scenarios", Path(self.build_lib) / "glidelab" / "scenarios", dirs_exist_ok=True)
 
 
 FIND_PYBIND11 = """cmake_minimum_required(VERSION 3.22)
@@ -63,4 +73,4 @@ def numpy_for(pybind11):
 if __name__ == "__main__":
     version = re.search(r"project\(glidelab VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())
     setup(version=version[1], install_requires=[numpy_for(pybind11_version())],
-          ext_modules=[Extension("glidelab._glidelab", sources=[])], cmdclass={"build_ext": BuildWithCMake})
+          ext_modules=[Extension("glidelab._glidelab", sources=[])], cmdclass={"build_ext": BuildWithCMake, "build_py": BuildWithScenarios})

@@ -19,6 +19,11 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 /// Reports nothing and never stops.
 inline void no_progress(std::string_view, double) {}
 
+/// Called again and again by work that has no progress to report. May throw Interrupted, which ends the work.
+using StopCheck = std::function<void()>;
+
+inline void never_stop() {}
+
 /// Sets a flag if its scope is left by an exception.
 class FlagOnThrow {
  public:

@@ -76,12 +76,25 @@ def main() -> None:
         whole = least_s(lambda: glidelab.smooth(t, x, bandwidth_s))
         inside = least_s(lambda: _glidelab.smooth(t, x, bandwidth_s, 3, "gaussian", None))
         print(f"smooth, 1000 points, h of {steps} steps: {1e6 * whole:.0f} µs, of these {1e6 * (whole - inside):.1f} µs in Python")
+    print_by_kind()
 
 
-def least_s(call) -> float:
+def print_by_kind() -> None:
+    """The smoother with standard deviations, and over uneven times, whose points have weights of their own."""
+    even = np.arange(1000) / 200.0
+    uneven = even + np.random.default_rng(1).uniform(-0.002, 0.002, len(even))
+    for steps in (3, 6, 12):
+        h = steps / 200.0
+        found = [1e6 * least_s(lambda t=t, x=np.sin(t), noise_m=noise_m: glidelab.smooth(t, x, h, noise_m=noise_m), calls)
+                 for t, calls in ((even, 2000), (uneven, 200)) for noise_m in (None, 2e-5)]
+        print(f"smooth, 1000 points, h of {steps} steps, without and with noise_m: even times {found[0]:.0f} and {found[1]:.0f} "
+              f"µs, uneven times {found[2]:.0f} and {found[3]:.0f} µs")
+
+
+def least_s(call, calls: int = 2000) -> float:
     """The least time of many calls."""
     times = []
-    for _ in range(2000):
+    for _ in range(calls):
         begin = time.perf_counter()
         call()
         times.append(time.perf_counter() - begin)

@@ -66,6 +66,7 @@ if(TARGET glidelab_python)
   string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
          "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), "
          "python3-numpy, gnuplot-nox | gnuplot, fonts-dejavu-core")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "glidelab")  # which has the scenarios and the notebooks
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, python3-tqdm")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module: import glidelab.")
 endif()

@@ -52,13 +52,14 @@ void say_power(const CommonOptions& common, const validate::Baseline& then, cons
     runs = std::max(runs, of.runs_for_weak);
   }
   say(common, fmt::format("smallest worsening that is detected with probability {}; and how many runs, in the baseline "
-                          "and now, detect errors {} times as large with probability {}:\n{}",
-                          validate::kDetectionProbability, validate::kSmallFactor, validate::kSmallDetection,
-                          report::text_table(rows, 3)));
+                          "and now, so detect errors {} times as large:\n{}",
+                          validate::kDetectionProbability, validate::kSmallFactor, report::text_table(rows, 3)));
   if (weak == 0) return;
-  say(common, fmt::format("warning: a weak gate: for {} of {} quantities it detects with probability {} only errors "
-                          "more than {} times as large; about {} runs would suffice, in the baseline and now (--runs)",
-                          weak, rows.size() - 1, validate::kDetectionProbability, validate::kWeakFactor, runs));
+  say(common,
+      fmt::format("warning: a weak gate: for {} of {} quantities only errors more than {} times as large are "
+                  "detected with this probability; about {} runs, in the baseline and now (--runs), suffice for "
+                  "a factor of {}",
+                  weak, rows.size() - 1, validate::kWeakFactor, runs, validate::kWeakFactor));
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <random>
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
@@ -37,6 +39,14 @@ void refuse_to_replace(const fs::path& path) {
   throw base::InputError(base::Issue{path.string(), 0, "", "something that exists", "a new name"});
 }
 
+/// A seed that nobody can guess, for with it anybody could make the truth. It has 53 bits, which every reader of JSON
+/// keeps.
+std::uint64_t drawn_seed() {
+  std::random_device random;
+  const std::uint64_t high = random(), low = random();
+  return ((high << 32) ^ low) >> 11;
+}
+
 void make(const ChallengeCommand& options) {
   const fs::path folder = fs::absolute(options.folder);
   const fs::path truth = validate::truth_file_of(folder);
@@ -45,18 +55,19 @@ void make(const ChallengeCommand& options) {
   check_file_writable(truth);
   base::StagedOutput staged(folder);
   ProgressDisplay display(options.common.quiet, options.common.verbose);
-  const std::string text =
-      validate::make_challenge(*validate::challenge_level(options.level), options.common.seed.value_or(1),
-                               options.cases, staged.dir(), options.common.jobs, display.callback());
+  const std::uint64_t seed = options.common.seed ? *options.common.seed : drawn_seed();
+  const std::string text = validate::make_challenge(*validate::challenge_level(options.level), seed, options.cases,
+                                                    staged.dir(), options.common.jobs, display.callback());
   throw_if_interrupted();
   write_whole(truth, text);
   staged.publish_whole();
   display.clear();
   const std::string made = base::read_file(folder / "challenge.json");
-  print_result(options.common.json ? made
-                                   : fmt::format("{} cases in {}\nthe truth is in {}: keep it secret until all answers "
-                                                 "are in; its SHA-256 is in challenge.json\n",
-                                                 options.cases, folder.string(), truth.string()));
+  print_result(options.common.json
+                   ? made
+                   : fmt::format("{} cases in {}\nthe truth is in {}, with the seed: keep it secret until all "
+                                 "answers are in; its SHA-256 is in challenge.json\n",
+                                 options.cases, folder.string(), truth.string()));
 }
 
 /// The answer of one of Glidelab's own estimators.
@@ -176,7 +187,7 @@ void add_challenge(CLI::App& app, Command& chosen) {
   add_outside_options(*command, options->outside, "For run: an estimator of your own");
   add_common_options(*command, options->common,
                      "glidelab-out/answers-<name of the estimator>, glidelab-out/challenge-<name of the folder>",
-                     "For make: seed of the cases, stored only in the truth file; default: 1");
+                     "For make: seed of the cases, stored only in the truth file; default: drawn at random");
   command->callback([options, command, &chosen] {
     check_use(*command, *options);
     chosen = [options] {

@@ -102,7 +102,8 @@ long TomlTable::integer(std::string_view key, long low, long high) const {
   const toml::node* found = node_->find(key);
   const auto* value = found == nullptr ? nullptr : found->as_integer();
   if (value != nullptr && value->get() >= low && value->get() <= high) return static_cast<long>(value->get());
-  node_->reject(key, found, fmt::format("a whole number from {} to {}", low, high));
+  node_->reject(key, found,
+                low == high ? fmt::format("{}", low) : fmt::format("a whole number from {} to {}", low, high));
   return low;
 }
 

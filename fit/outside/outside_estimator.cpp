@@ -108,6 +108,11 @@ OutsideRun run_of(const base::ProgramEnd& end, const OutsideEstimator& estimator
                                                    : fmt::format("signal {} (SIG{})", WTERMSIG(end.status), name));
   } else if (WEXITSTATUS(end.status) != 0) {
     failed(OutsideFailure::exit_status, fmt::format("exit status {}", WEXITSTATUS(end.status)));
+    if (!estimator.function.empty()) {
+      const bool wrong = WEXITSTATUS(end.status) == kWrongAnswer;
+      run.failure = wrong ? OutsideFailure::bad_output : OutsideFailure::raised;
+      run.what = last_line(log);
+    }
   }
   return run;
 }
@@ -184,8 +189,13 @@ OutsideOutcome run_outside(const OutsideEstimator& estimator, const fs::path& fo
   return outcome;
 }
 
+std::string command_text(const OutsideEstimator& estimator) {
+  if (!estimator.function.empty()) return "the function " + estimator.function;
+  return fmt::format("{}", fmt::join(estimator.words, " "));
+}
+
 OutsideTally tally_of(const OutsideEstimator& estimator, const std::vector<OutsideRun>& runs) {
-  return tally_of(estimator.name, fmt::format("{}", fmt::join(estimator.words, " ")), runs);
+  return tally_of(estimator.name, command_text(estimator), runs);
 }
 
 }  // namespace glidelab::fit

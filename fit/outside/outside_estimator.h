@@ -21,8 +21,18 @@ struct OutsideEstimator {
   std::string name;                ///< in results: no name of fit/estimators.h
   std::vector<std::string> words;  ///< of the command, with {folder} and {out} in them
   base::ProgramLimits limits = {};
+  /// The name of a function, if all that the program does is to have it called: it stands for the words, and an exit
+  /// status other than 0 means that the function raised an exception (kRaised), whose type, text and place the program
+  /// prints, or that it gave a wrong answer (kWrongAnswer).
+  std::string function = {};
   std::function<bool()> stop = {};  ///< polled while it runs; once true, the program is ended and Interrupted is thrown
 };
+
+/// Exit statuses of a program that has a function called.
+inline constexpr int kRaised = 1, kWrongAnswer = 2;
+
+/// In results: its words, or "the function mine".
+std::string command_text(const OutsideEstimator& estimator);
 
 /// From a command line such as "python3 mine.py {folder} {out}". Words are separated by blanks; '…' and "…" keep blanks
 /// together, and a backslash keeps the next character as it is. No shell reads it: no other character is special.

@@ -11,6 +11,8 @@ std::string_view key_of(OutsideFailure failure) {
   switch (failure) {
     case OutsideFailure::exit_status:
       return "exit_status";
+    case OutsideFailure::raised:
+      return "raised";
     case OutsideFailure::signal:
       return "signal";
     case OutsideFailure::time_out:

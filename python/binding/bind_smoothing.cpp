@@ -20,6 +20,7 @@
 #include "core/motion/smoothing/smoother_list.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
+#include "python/binding/watched_work.h"
 #include "report/analysis/note_words.h"
 
 namespace glidelab::python {
@@ -96,6 +97,22 @@ void put(const std::optional<core::SmoothedPoint>& point, std::size_t i, std::si
   out[2 * n + i] = point ? point->a_m_s2 : kNone;
 }
 
+/// work(stop_check) without the interpreter's lock, ended by Ctrl-C.
+template <typename Work>
+auto watched(const Work& work) {
+  WatchedWork watch{py::none()};
+  return watch.run([&](const base::Progress&) { return work([&] { watch.throw_if_stopped(); }); });
+}
+
+/// The same for the local polynomial, whose work for few points is over before a person or a thread has started.
+template <typename Work>
+void watched(std::size_t points, const Work& work) {
+  constexpr std::size_t kFew = 4000;  // at most 1.6e7 weights: a tenth of a second or two
+  if (points > kFew) return watched(work);
+  const py::gil_scoped_release without_lock;
+  work(base::never_stop);
+}
+
 /// x, v and a at the times of the points, and below these their standard deviations if the noise is stated.
 py::array_t<double> smooth(const Vector& times, const Vector& positions, double bandwidth_s, int order,
                            const std::string& kernel, std::optional<double> noise_m) {
@@ -106,18 +123,20 @@ py::array_t<double> smooth(const Vector& times, const Vector& positions, double 
   const std::size_t n = t_s.size();
   py::array_t<double> result = rows(noise_m ? 6 : 3, n);
   double* const out = result.mutable_data();
-  const py::gil_scoped_release without_lock;
-  const core::LocalPolynomial smoother(t_s, options);
-  const std::vector<std::optional<core::SmoothedPoint>> points = smoother.smooth(x_m);
-  for (std::size_t i = 0; i < n; ++i) put(points[i], i, n, out);
-  if (!noise_m) return result;
-  core::RowVariance variance({*noise_m * *noise_m});
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::optional<core::KernelRow> row = smoother.row_of_point(i);
-    out[3 * n + i] = row ? std::sqrt(variance.of_x(*row)) : kNone;
-    out[4 * n + i] = row ? std::sqrt(variance.of_v(*row)) : kNone;
-    out[5 * n + i] = row && order > 1 ? std::sqrt(variance.of_a(*row)) : kNone;
-  }
+  watched(n, [&](const base::StopCheck& stop_check) {
+    const core::LocalPolynomial smoother(t_s, options);
+    const std::vector<std::optional<core::SmoothedPoint>> points = smoother.smooth(x_m, stop_check);
+    for (std::size_t i = 0; i < n; ++i) put(points[i], i, n, out);
+    if (!noise_m) return;
+    core::RowVariance variance({*noise_m * *noise_m});
+    for (std::size_t i = 0; i < n; ++i) {
+      stop_check();
+      const std::optional<core::KernelRow> row = smoother.row_of_point(i);
+      out[3 * n + i] = row ? std::sqrt(variance.of_x(*row)) : kNone;
+      out[4 * n + i] = row ? std::sqrt(variance.of_v(*row)) : kNone;
+      out[5 * n + i] = row && order > 1 ? std::sqrt(variance.of_a(*row)) : kNone;
+    }
+  });
   return result;
 }
 
@@ -132,12 +151,14 @@ py::array_t<double> smooth_at(const Vector& times, const Vector& positions, cons
   }
   py::array_t<double> result = rows(3, at_s.size());
   double* const out = result.mutable_data();
-  const py::gil_scoped_release without_lock;
-  const core::LocalPolynomial smoother(t_s, options);
-  for (std::size_t i = 0; i < at_s.size(); ++i) {
-    const std::optional<core::KernelRow> row = smoother.row(at_s[i]);
-    put(row ? std::optional(core::weighted_sums(*row, x_m)) : std::nullopt, i, at_s.size(), out);
-  }
+  watched(std::max(t_s.size(), at_s.size()), [&](const base::StopCheck& stop_check) {
+    const core::LocalPolynomial smoother(t_s, options);
+    for (std::size_t i = 0; i < at_s.size(); ++i) {
+      stop_check();
+      const std::optional<core::KernelRow> row = smoother.row(at_s[i]);
+      put(row ? std::optional(core::weighted_sums(*row, x_m)) : std::nullopt, i, at_s.size(), out);
+    }
+  });
   return result;
 }
 
@@ -177,11 +198,10 @@ py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& 
     input.at_s.assign(span_of(*at).begin(), span_of(*at).end());
   }
   input.simultaneous = true;
-  core::SmoothedSeries series;
-  {
-    const py::gil_scoped_release without_lock;
-    series = smoother.smooth(input);
-  }
+  const core::SmoothedSeries series = watched([&](const base::StopCheck& stop_check) {
+    input.stop_check = stop_check;
+    return smoother.smooth(input);
+  });
   const std::vector<std::optional<core::SmoothedState>>& states = at ? series.at : series.points;
   const std::size_t n = states.size();
   if (n > 0 && std::ranges::none_of(states, [](const auto& state) { return state.has_value(); })) {
@@ -217,16 +237,15 @@ py::object choose_bandwidth(const Vector& times, const Vector& positions, const 
   if (t_s.size() < core::kFewestTrackPoints) {
     refuse("t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", core::kFewestTrackPoints));
   }
-  std::optional<core::BandwidthPick> pick;
-  {
-    const py::gil_scoped_release without_lock;
+  const std::optional<core::BandwidthPick> pick = watched([&](const base::StopCheck& stop_check) {
     core::BandwidthProblem problem;
+    problem.stop_check = stop_check;
     problem.parts = {{t_s, x_m}};
     problem.noise.sd_m = noise_m ? *noise_m : core::pilot_noise(t_s, x_m);
     problem.noise.autocovariance = {problem.noise.sd_m * problem.noise.sd_m};
     problem.step_s = core::median_step(t_s);
-    pick = rule->choose(problem);
-  }
+    return rule->choose(problem);
+  });
   if (!pick) return py::none();
   std::vector<double> at_s, local_s;
   for (const core::LocalBandwidth& one : pick->local) {

@@ -17,6 +17,7 @@ std::optional<fit::OutsideEstimator> outside_of(const std::optional<GivenEstimat
                                                 const WatchedWork& watched) {
   if (!given) return std::nullopt;
   fit::OutsideEstimator made = fit::outside_estimator(given->command, given->name);
+  made.function = given->function;
   made.limits.wall_s = given->seconds;
   made.limits.memory_bytes = static_cast<std::uint64_t>(given->megabytes * kMegabyte);
   made.stop = [&watched] { return watched.stopped(); };
@@ -25,8 +26,8 @@ std::optional<fit::OutsideEstimator> outside_of(const std::optional<GivenEstimat
 
 void bind_given_estimator(py::module_& module) {
   py::class_<GivenEstimator>(module, "EstimatorCommand")
-      .def(py::init([](std::string command, std::string name, double seconds, double megabytes) {
-        return GivenEstimator{std::move(command), std::move(name), seconds, megabytes};
+      .def(py::init([](std::string command, std::string name, std::string function, double seconds, double megabytes) {
+        return GivenEstimator{std::move(command), std::move(name), std::move(function), seconds, megabytes};
       }));
 }
 

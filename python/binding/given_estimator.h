@@ -11,7 +11,8 @@ namespace glidelab::python {
 
 struct GivenEstimator {
   std::string command;
-  std::string name;  ///< empty: from the command
+  std::string name;      ///< empty: from the command
+  std::string function;  ///< that the command calls; empty: none
   double seconds = 0.0;
   double megabytes = 0.0;
 };

@@ -24,7 +24,7 @@ from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Residuals
 from ._estimator import estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
 from ._film import FilmedClip, Frame, Rendered, render, render_folder
-from ._inputs import Track, load_scenario
+from ._inputs import Track, load_scenario, scenarios_folder
 from ._outside import OutsideFailures, OutsideRuns
 from ._recording import Finding, RecordingCheck, check
 from ._recovered import Recovered, WithEffects
@@ -76,5 +76,5 @@ __all__ = [
     "Strength", "Sweep", "SystemFailure", "Track", "Validation", "WithEffects", "analyze", "bandwidth_rules",
     "blind", "calibrate", "certify", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain",
     "fit_marker", "judge", "load_scenario", "plan", "position_noise", "render", "render_folder", "require",
-    "simulate", "smooth", "sweep", "validate",
+    "scenarios_folder", "simulate", "smooth", "sweep", "validate",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -12,7 +12,7 @@ from ._apart import interpreter
 from ._checks import file_name, switch, text, whole
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller
 from ._results import Made, Result, frame_of
-from ._shown import html_table
+from ._shown import html_plot, html_table, new_axes
 
 MOST_CASES = 100000
 
@@ -101,10 +101,58 @@ class Blind(Result):
         return frame_of({name: [getattr(one, name) for one in self.cases]
                          for name in ("case", "kind", "causes", "verdict", "named")})
 
+    def plot(self) -> list[Any]:
+        """The targets that are shares of cases, with what is wanted as dashes; and how many cases of each kind got each
+        verdict.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            The two.
+        """
+        shares, cases = new_axes(2)
+        shown = [one for one in self.targets if one.of and one.value is not None]
+        for number, one in enumerate(shown):
+            shares.barh(number, 100.0 * (one.value or 0.0), color="C3" if one.met is False else "0.8")
+            for limit in (one.at_least, one.at_most):
+                if limit is not None:
+                    shares.plot([100.0 * limit] * 2, [number - 0.4, number + 0.4], "k--", linewidth=1)
+        shares.set_yticks(range(len(shown)), [f"{one.what} ({one.yes} of {one.of})" for one in shown], fontsize=7)
+        shares.invert_yaxis()
+        shares.set_xlim(0.0, 100.0)
+        shares.set_xlabel("cases (%)")
+        kinds, verdicts, counts = self._counted()
+        most = max((count for of_kind in counts for count in of_kind), default=0)
+        cases.imshow(counts, cmap="Blues", aspect="auto", vmin=0)
+        for row, of_kind in enumerate(counts):
+            for column, count in enumerate(of_kind):
+                cases.text(column, row, str(count), ha="center", va="center",
+                           color="white" if 2 * count > most else "black")
+        cases.set_xticks(range(len(verdicts)), verdicts)
+        cases.set_yticks(range(len(kinds)), kinds)
+        cases.set_xlabel("verdict")
+        cases.set_ylabel("what was put in")
+        return [shares, cases]
+
+    def _counted(self) -> tuple[list[str], list[str], list[list[int]]]:
+        """Kinds, verdicts, and how many cases of each kind got each verdict."""
+        kinds = _in_order({one.kind for one in self.cases}, ("none", "single", "pair", "outside"))
+        verdicts = _in_order({one.verdict for one in self.cases}, ("none", "effect", "unknown", "failed"))
+        return kinds, verdicts, [[sum((one.kind, one.verdict) == (kind, verdict) for one in self.cases)
+                                  for verdict in verdicts] for kind in kinds]
+
     def _repr_html_(self) -> str:
         rows = [[one.what, _found_text(one), _wanted_text(one), "" if one.met is None else "met" if one.met else "missed"]
                 for one in self.targets]
-        return html_table(["", "found", "wanted", ""], rows, f"{len(self.cases)} blind cases, seed {self.seed}")
+        kinds, verdicts, counts = self._counted()
+        return (html_table(["", "found", "wanted", ""], rows, f"{len(self.cases)} blind cases, seed {self.seed}")
+                + html_table(["put in", *(f"verdict {verdict}" for verdict in verdicts)],
+                             [[kind, *map(str, of_kind)] for kind, of_kind in zip(kinds, counts)])
+                + (html_plot(self.plot) if self.cases else ""))
+
+
+def _in_order(found: set[str], order: Sequence[str]) -> list[str]:
+    return [one for one in order if one in found] + sorted(found - set(order))
 
 
 def _found_text(target: BlindTarget) -> str:

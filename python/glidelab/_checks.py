@@ -10,7 +10,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import input_error, input_errors
+from ._errors import input_error
 
 Vector = NDArray[np.float64]  # one dimension, contiguous: as the C++ side takes it, without a copy where it is so
 _LONGEST = 60  # characters of a value in a message
@@ -132,14 +132,15 @@ def refuse_masked(name: str, values: Any, of: str = "") -> None:
     Raises
     ------
     InputError
-        With the index of each.
+        With the index of the first, and how many more there are.
     """
     masks: Any = np.ma
     if not masks.is_masked(values):
         return
     places: Sequence[Any] = np.argwhere(masks.getmaskarray(masks.asarray(values))).tolist()
-    raise input_errors([(of, 0, f"{name}[{', '.join(map(str, place))}]", "a masked value",
-                         "a number: leave out what was not measured") for place in places])
+    first, more = ", ".join(map(str, places[0])), len(places) - 1
+    raise input_error(f"{name}[{first}]", f"a masked value{f', and {more} more' if more else ''}",
+                      "a number: leave out what was not measured", of)
 
 
 def vector(name: str, values: ArrayLike, of: str = "") -> Vector:

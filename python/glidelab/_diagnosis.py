@@ -14,8 +14,8 @@ from ._checks import Vector, frozen, real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
                       given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, stated_incline, teller)
-from ._recovered import Recovered, recovered_of
-from ._results import BY_ROW, Made, Result, frame_of
+from ._recovered import QUANTITIES, Recovered, recovered_of
+from ._results import BY_ROW, Made, Result, frame_of, rounded
 from ._shown import Brief, html_plot, html_table, new_axes
 from ._sources import Film, source_of
 
@@ -166,9 +166,38 @@ class Diagnosis(Result):
         return axes
 
     def _repr_html_(self) -> str:
-        rows = [[one.id, f"{one.joint_probability:.3g}", ", ".join(one.equivalent_to)] for one in self.effects]
-        head = f"<p><b>{html.escape(self.summary)}</b></p>"
-        return head + (html_table(["effect", "probability", "or"], rows) if rows else "") + html_plot(self.plot)
+        tables = [
+            (["effect", "where", "probability", "or", "its size"],
+             [[one.id, one.stage, f"{one.joint_probability:.3g}", ", ".join(one.equivalent_to), _sizes(one.parameters)]
+              for one in self.effects], "effects that the verdict names"),
+            (["cause", "share of the gap (%)", "95 % interval", "gap with it and those above"],
+             [[one.id, *("" if one.share is None else f"{100.0 * one.share:.0f}",
+                         "" if one.share_interval95 is None else "{:.0f} to {:.0f}".format(
+                             *(100.0 * end for end in one.share_interval95)),
+                         "" if one.gap_after is None else f"{one.gap_after:.3g}")] for one in self.explained],
+             "" if self.gap_before is None else f"a gap of {self.gap_before:.3g} noise floors, and what explains it"),
+            (["group", "mass (kg)", "stated α (°)", "with", "K/m", "µ", "α", "terminal velocity"],
+             [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", ", ".join(one.with_causes),
+               *(str(getattr(one, key)) for key in QUANTITIES)] for one in self.recovered],
+             "recovered with the causes in the model"),
+            (["explanation", "probability", "gain of log evidence", "gap with it"],
+             [[str(one["id"]), *("" if one.get(key) is None else f"{one[key]:.3g}" for key in
+                                 ("probability", "log_evidence_gain", "gap_after"))]
+              for one in self.to_dict()["ranking"]], "all explanations that were weighed"),
+        ]
+        said = [f"<p><b>{html.escape(self.summary)}</b></p>", f"<p>{html.escape(self.next_experiment)}</p>"]
+        said += [f"<p>{html.escape(note)}</p>" for note in self.notes]
+        return "".join(said) + "".join(html_table(*one) for one in tables if one[1]) + html_plot(self.plot)
+
+
+def _sizes(parameters: Mapping[str, Any]) -> str:
+    """"force_n 0.012 ± 0.001": each parameter of an effect."""
+    said = []
+    for name, found in parameters.items():
+        value = found.get("value")
+        if value is not None:
+            said.append(f"{name} {rounded(value, found.get('sd'))}{' (at the end of its range)' if found.get('at_end') else ''}")
+    return ", ".join(said)
 
 
 _MOST_NAMED = 12  # clips in a legend; more would hide the residuals

@@ -19,18 +19,17 @@ from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
-from ._outside import Estimator, WrongAnswer, checked_answer, said_by
+from ._outside import Estimator, WrongAnswer, checked_answer, registered, said_by
 from ._recovered import QUANTITIES
 from ._results import Quantity
 from ._studies import Judged, Judgement
 
 _Function = TypeVar("_Function", bound=Estimator)
 
-_registered: dict[str, Estimator] = {}
-
 
 def estimator(function: _Function) -> _Function:
-    """Registers a function as an estimator, under its name, so that `judge` takes it by default.
+    """Registers a function as an estimator, under its name: `judge` takes it by default, and `judge`, `validate`,
+    `coverage` and `sweep` take its name.
 
     Parameters
     ----------
@@ -56,7 +55,7 @@ def estimator(function: _Function) -> _Function:
     name = function.__name__
     if name in _glidelab.estimator_names():
         raise input_error("estimator", f"the name \"{name}\"", "one that is not a built-in estimator's")
-    _registered[name] = function
+    registered[name] = function
     return function
 
 
@@ -176,7 +175,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     scenario : str, path or dict
         A scenario file (docs/reference/scenario.md), or what `load_scenario` makes of one. Nothing is rendered.
     *estimators : callable or str
-        As `estimator` describes them, or names of built-in ones; without any, ``"phase-diagram"`` and all that are
+        As `estimator` describes them, or names of registered or built-in ones; without any, ``"phase-diagram"`` and all that are
         registered. They are given positions, masses and stated inclinations, and never the truth.
     noise_m : float
         Standard deviation of a position in metres, white and normal.
@@ -215,13 +214,15 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     ...     return {"mu": 0.0}
     >>> print(glidelab.judge("scenarios/paper/inclined.toml", noise_m=2e-5)) # doctest: +SKIP
     """
-    chosen: list[Union[Estimator, str]] = list(estimators) or [DEFAULT_ESTIMATOR, *_registered.values()]
+    chosen: list[Union[Estimator, str]] = list(estimators) or [DEFAULT_ESTIMATOR, *registered.values()]
     named: dict[str, Union[Estimator, str]] = {}
     for one in chosen:
+        one = registered.get(one, one) if isinstance(one, str) else one
         name = one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
         if isinstance(one, str) and one not in _glidelab.estimator_names():
-            raise input_error("estimators", f"\"{one}\"", f"a function, or one of {', '.join(_glidelab.estimator_names())}"
-                              + _glidelab.did_you_mean(one, _glidelab.estimator_names()))
+            names = [*registered, *_glidelab.estimator_names()]
+            raise input_error("estimators", f"\"{one}\"", f"a function, or one of {', '.join(names)}"
+                              + _glidelab.did_you_mean(one, names))
         if not callable(one) and not isinstance(one, str):
             raise input_error("estimators", repr(one), "a function, or the name of a built-in estimator")
         if name in named:

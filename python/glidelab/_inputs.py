@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._checks import (Vector, above_0, file_name, is_whole, optional_real, real, shown, stored, switch, text,
+from ._checks import (Vector, above_0, file_name, is_whole, kind_of, optional_real, real, shown, stored, switch, text,
                       vector, whole)
 from ._errors import input_error
 from ._shown import Brief, html_plot, html_table, new_axes
@@ -235,6 +235,30 @@ def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
     return file_name("scenario", scenario, "the name of a file, or a dict"), None
 
 
+def scenarios_folder() -> Path:
+    """The folder of the scenarios that come with Glidelab: ``scenarios_folder() / "paper/inclined.toml"``.
+
+    Returns
+    -------
+    Path
+        That of the checkout in which Python runs or the module was built; else that of the package, as pip installs it;
+        else the one next to which the package is installed, or of the Debian package ``glidelab``.
+
+    Raises
+    ------
+    InputError
+        There is none of them; the message says where they were looked for.
+    """
+    package, here = Path(__file__).resolve().parent, Path.cwd()
+    within = [folder / "scenarios" for folder in (here, *here.parents, package, *package.parents)]
+    shared = [folder / "share" / "glidelab" / "scenarios" for folder in (*package.parents, Path("/usr"))]
+    for folder in (*within, *shared):
+        if (folder / "tutorial.toml").is_file():
+            return folder
+    raise input_error("scenarios", "no such folder", f'a folder "scenarios" with tutorial.toml in {here}, in {package}, or in a '
+                      f"folder above them, or {shared[-1]}: from a checkout, `pip install .`, or the Debian package glidelab")
+
+
 def load_scenario(file: PathLike) -> dict[str, Any]:
     """A scenario file as a dict, to be changed and given to `simulate`, `validate`, `coverage`, ...
 
@@ -312,5 +336,5 @@ def teller(progress: Progress) -> Optional[Callable[[str, float], object]]:
     if progress is True:
         return _Bar()
     if not callable(progress):
-        raise input_error("progress", f"a {type(progress).__name__}", "a function(stage, fraction), True or None")
+        raise input_error("progress", kind_of(progress), "a function(stage, fraction), True or None")
     return progress

@@ -10,6 +10,7 @@ import socketserver
 import sys
 import tempfile
 import threading
+import time
 import tomllib
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,7 +22,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _glidelab
-from ._checks import above_0, text
+from ._checks import above_0, shown, text
 from ._errors import input_error
 from ._inputs import Track
 from ._recovered import QUANTITIES
@@ -52,13 +53,15 @@ class OutsideRuns:
     Attributes
     ----------
     name, command : str
-        As it is called in results, and what was run.
+        As it is called in results, and what was run; of a function, ``"the function mine"``.
     runs, failed : int
         All, and those that left no answer.
     failures : dict of str to OutsideFailures
-        By kind: ``"exit_status"``, ``"signal"``, ``"time_out"``, ``"no_output"``, ``"bad_output"``.
+        By kind: ``"exit_status"`` of a program, ``"raised"`` of a function (with the exception's type, text and place),
+        ``"signal"``, ``"time_out"``, ``"no_output"``, ``"bad_output"``.
     mean_s, longest_s : float or None
-        Seconds of a run; None where they were not measured.
+        Seconds of a run; in a sweep those of a function's calls in this process. None where they were not measured, as of a
+        program in a sweep.
     """
 
     name: str
@@ -70,19 +73,24 @@ class OutsideRuns:
     longest_s: Optional[float]
 
 
-def outside_runs(document: Mapping[str, Any]) -> Optional[OutsideRuns]:
-    """The object "outside" of a result's JSON; None where no estimator was given."""
+def outside_runs(document: Mapping[str, Any], calls_s: Sequence[float] = ()) -> Optional[OutsideRuns]:
+    """The object "outside" of a result's JSON; None where no estimator was given. The seconds of a function's calls stand
+    where those of the runs were not stored."""
     found = document.get("outside")
     if found is None:
         return None
     failures = {kind: OutsideFailures(one["count"], one["first"]) for kind, one in found["failures"].items()}
-    return OutsideRuns(found["name"], found["command"], found["runs"], found["failed"], failures, found.get("mean_s"),
-                       found.get("longest_s"))
+    mean_s, longest_s = found.get("mean_s"), found.get("longest_s")
+    if mean_s is None and calls_s:
+        mean_s, longest_s = sum(calls_s) / len(calls_s), max(calls_s)
+    return OutsideRuns(found["name"], found["command"], found["runs"], found["failed"], failures, mean_s, longest_s)
 
 
 # --- a function's answers
 
 Estimator = Callable[[list[Track]], Mapping[str, object]]  # what it may answer, `estimator` says
+
+registered: dict[str, Estimator] = {}  # by `estimator`, under their names
 
 
 class WrongAnswer(Exception):
@@ -208,14 +216,17 @@ def _called(function: Estimator, folder: Path) -> str:
 
 _PLACE = "GLIDELAB_FUNCTION_"  # and the name, of the environment: where the process finds the function
 
-# What the process does: it hands on the two folders, and ends with what is said of them, or with status 0.
+_RAISED, _WRONG_ANSWER = "1", "2"  # exit statuses, as fit/outside/outside_estimator.h has them
+
+# What the process does: it hands on the two folders, says what is said of them, and ends with the status before it, or 0.
 _CLIENT = """import os, socket, sys
 with socket.socket(socket.AF_UNIX) as caller:
     caller.connect(os.environ[sys.argv[1]])
     caller.sendall(os.fsencode(chr(0).join(sys.argv[2:])))
     caller.shutdown(socket.SHUT_WR)
-    said = b"".join(iter(lambda: caller.recv(4096), b""))
-sys.exit(said.decode(errors="replace") or 0)"""
+    said = b"".join(iter(lambda: caller.recv(4096), b"")).decode(errors="replace")
+print(said[1:], file=sys.stderr)
+sys.exit(int(said[:1] or 0))"""
 
 
 class _Calls(socketserver.StreamRequestHandler):
@@ -227,16 +238,20 @@ class _Calls(socketserver.StreamRequestHandler):
         folder, out = (Path(os.fsdecode(name)) for name in self.rfile.read().split(b"\0"))
         try:
             with self.server.one_at_a_time:
-                results = _called(self.server.function, folder)
+                begin = time.perf_counter()
+                try:
+                    results = _called(self.server.function, folder)
+                finally:
+                    self.server.calls_s.append(time.perf_counter() - begin)
             (out / "results.json").write_text(results, encoding="utf-8")
         except WrongAnswer as wrong:
-            self._say(str(wrong))
+            self._say(_WRONG_ANSWER, str(wrong))
         except BaseException as error:  # pylint: disable=broad-exception-caught  # whatever it raises is its failure
-            self._say(said_by(error))
+            self._say(_RAISED, said_by(error))
 
-    def _say(self, what: str) -> None:
+    def _say(self, status: str, what: str) -> None:
         with suppress(OSError):  # the process was ended
-            self.wfile.write((" ".join(what.split()) or "failed").encode(errors="replace"))
+            self.wfile.write((status + (" ".join(what.split()) or "failed")).encode(errors="replace"))
 
 
 class _Server(socketserver.ThreadingUnixStreamServer):
@@ -246,20 +261,23 @@ class _Server(socketserver.ThreadingUnixStreamServer):
     block_on_close = False
     request_queue_size = 128
 
-    def __init__(self, place: str, function: Estimator) -> None:
+    def __init__(self, place: str, function: Estimator, calls_s: list[float]) -> None:
         super().__init__(place, _Calls)
         self.function = function
+        self.calls_s = calls_s
         self.one_at_a_time = threading.Lock()
 
 
 @contextmanager
-def _served(function: Estimator, name: str) -> Iterator[str]:
-    """The command that calls a function of this process, for as long as it is served."""
+def _served(function: Estimator, name: str, calls_s: list[float]) -> Iterator[str]:
+    """The command that calls a function of this process, for as long as it is served; `calls_s` gains the seconds of each
+    call."""
     key = _PLACE + "".join(one if one.isascii() and one.isalnum() else "_" for one in name)
     if key in os.environ or not sys.executable:
         raise input_error("estimator_command", f"the function {name}", "one that is not being judged already under this "
                           "name" if sys.executable else "a command: no Python interpreter is known that could call it")
-    with tempfile.TemporaryDirectory(prefix="glidelab-") as folder, _Server(f"{folder}/calls", function) as server:
+    with tempfile.TemporaryDirectory(prefix="glidelab-") as folder, _Server(
+            f"{folder}/calls", function, calls_s) as server:
         os.environ[key] = f"{folder}/calls"
         serving = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True)
         serving.start()
@@ -272,10 +290,29 @@ def _served(function: Estimator, name: str) -> Iterator[str]:
             serving.join()
 
 
+@dataclass(frozen=True)
+class Given:
+    """An estimator as the C++ side takes it, None without one; and the seconds of each call of a function."""
+
+    command: Optional[_glidelab.EstimatorCommand]
+    calls_s: list[float]
+
+
+def _named_function(command: str) -> Union[str, Estimator]:
+    """The registered function of this name; else the command itself, which has to be one."""
+    if command in registered:
+        return registered[command]
+    if "{" not in command and len(command.split()) == 1:
+        names = list(registered)
+        raise input_error("estimator_command", shown(command), "a command such as \"python3 mine.py {folder} {out}\", a "
+                          "function, or the name of one that is registered by @glidelab.estimator"
+                          + (f": {', '.join(names)}" if names else "") + _glidelab.did_you_mean(command, names))
+    return command
+
+
 @contextmanager
-def given_command(command: Union[str, Estimator, None], name: str, seconds: float,
-                  megabytes: float) -> Iterator[Optional[_glidelab.EstimatorCommand]]:
-    """As the C++ side takes it; None without a command. A function is served as long as this lasts."""
+def given_command(command: Union[str, Estimator, None], name: str, seconds: float, megabytes: float) -> Iterator[Given]:
+    """As studies take it. A function is served as long as this lasts."""
     for key, value in (("estimator_seconds", seconds), ("estimator_megabytes", megabytes)):
         above_0(key, value, "a number above 0")
     text("estimator_name", name)
@@ -284,11 +321,16 @@ def given_command(command: Union[str, Estimator, None], name: str, seconds: floa
     if command is None:
         if name:
             raise input_error("estimator_name", repr(name), "estimator_command= as well")
-        yield None
-    elif callable(command):
+        yield Given(None, [])
+        return
+    if isinstance(command, str):
+        command = _named_function(command)
+    if callable(command):
         name = name or getattr(command, "__name__", type(command).__name__).strip("<>")
-        with _served(command, name) as words:
-            yield _glidelab.EstimatorCommand(words, name, float(seconds), float(megabytes))
+        function = getattr(command, "__name__", type(command).__name__)
+        calls_s: list[float] = []
+        with _served(command, name, calls_s) as words:
+            yield Given(_glidelab.EstimatorCommand(words, name, function, float(seconds), float(megabytes)), calls_s)
     else:
         text("estimator_command", command, "a string such as \"python3 mine.py {folder} {out}\", or a function")
-        yield _glidelab.EstimatorCommand(command, name, float(seconds), float(megabytes))
+        yield Given(_glidelab.EstimatorCommand(command, name, "", float(seconds), float(megabytes)), [])

@@ -280,7 +280,11 @@ def frame_of(columns: Mapping[str, Sequence[Any]], by_row: Sequence[str] = ()) -
     """
     pandas = importlib.import_module("pandas")
     units = {name: BY_ROW if name in by_row else unit_of(name) for name in columns}
-    table = dict(columns)
+    table: dict[str, Any] = dict(columns)
+    for name, values in columns.items():  # a number that is missing is NaN, in a column of numbers even if all are
+        floats = [isinstance(value, float) for value in values]
+        if all(one or value is None for one, value in zip(floats, values)) and (any(floats) or name in by_row):
+            table[name] = np.array([math.nan if value is None else value for value in values], dtype=np.float64)
     if by_row:
         table["unit"] = [unit_of(name) for name in columns["quantity"]]
         units["unit"] = ""

@@ -100,12 +100,16 @@ class Smoothed(Written):
         return "\n".join(f"{name.ljust(width)}  {value}" for name, value in rows) + "\n"
 
     def _rows(self) -> list[list[str]]:
-        rows = [["points", str(len(self.t_s))], ["bandwidth (s)", f"{self.bandwidth_s:.4g}"]]
-        if self.strength is not None:
+        rows = [["points", str(len(self.t_s))]]
+        if self.strength is None:
+            rows.append(["bandwidth (s)", f"{self.bandwidth_s:.4g}"])
+        else:
             rows += [["chosen by", self.strength.method], ["smoothing time (s)", f"{self.strength.time_s:.4g}"],
+                     ["local cubic with as much noise in a (s)", f"{self.bandwidth_s:.4g}"],
                      ["noise of a position (m)", f"{self.strength.noise_m:.3g}"],
-                     ["breaks (s)", ", ".join(f"{at:.4g}" for at in self.strength.breaks_s)],
                      ["simultaneous 95 % band of a", f"± {self.strength.simultaneous_a:.3g} sd"]]
+            if self.strength.breaks_s.size > 0:
+                rows.append(["breaks (s)", ", ".join(f"{at:.4g}" for at in self.strength.breaks_s)])
         names = {"x_m": "x (m)", "v_m_s": "v (m/s)", "a_m_s2": "a (m/s²)"}
         for name, words in names.items():
             values, sd = getattr(self, name), getattr(self, f"sd_{name}")
@@ -176,7 +180,12 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[SupportsFloat] 
 
     Notes
     -----
-    Equations 10 to 12 of the paper; Fan and Gijbels 1996, section 3.2. The weights are exact for any times.
+    The local polynomial: equations 10 to 12 of the paper; Fan and Gijbels 1996, section 3.2. The weights are exact for any
+    times. ``kalman`` and ``spline`` are one posterior: that a spline is the mean of an integrated Wiener process is
+    Wahba's (1978, J. R. Stat. Soc. B 40, 364; breaks: Wecker and Ansley 1983, J. Am. Stat. Assoc. 78, 81); its computation
+    as a state-space model Hartikainen and Särkkä's (2010, IEEE MLSP, 379), here by a square-root information filter
+    (Bierman 1977); splines and cross-validation: Green and Silverman 1994, chapters 2 and 3; Kim and Gu 2004.
+    docs/guide/bandwidth.md compares them.
     """
     t, x = vector("t_s", t_s), vector("x_m", x_m)
     text("smoother", smoother, f"one of {', '.join(_glidelab.smoother_names())}")

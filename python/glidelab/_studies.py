@@ -116,11 +116,18 @@ class Validation(Result):
                                    NORMAL95 * (one.sd or 0.0)) for one in self.quantities])
 
     def _repr_html_(self) -> str:
+        document = self.to_dict()
+        answer = " ".join(str(self).partition("\n\n")[0].split())
+        head = f"<p><b>{html.escape(answer)}</b></p><p>The marker was found in {self.detected} of {self.frames} frames.</p>"
         rows = [[one.configuration, one.estimator, words_of(one.quantity),
-                 *("" if number is None else f"{number:.5g}" for number in (one.truth, one.value, one.sd, one.error))]
-                for one in self.quantities]
-        return html_table(["configuration", "estimator", "quantity", "truth", "found", "sd", "error"],
-                          rows) + html_plot(self.plot)
+                 *("" if number is None else f"{number:.5g}" for number in (one.truth, one.value, one.sd, one.error)),
+                 "" if one.error is None or not one.sd else f"{one.error / one.sd:+.2f}",
+                 "" if one.cramer_rao_sd is None else f"{one.cramer_rao_sd:.3g}"] for one in self.quantities]
+        lines = [[one["clip"], "v < 0" if one["direction"] < 0 else "v > 0", f"{one['r2']:.6f}"]
+                 for one in document.get("lines", ())]
+        return (head + html_table(["configuration", "estimator", "quantity", "truth", "found", "sd", "error", "error/sd",
+                                   "least sd"], rows)
+                + (html_table(["clip", "line", "R²"], lines) if lines else "") + html_plot(self.plot))
 
 
 def validate(scenario: Scenario, *, estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
@@ -135,8 +142,8 @@ def validate(scenario: Scenario, *, estimator_command: Union[str, Estimator, Non
     estimator_command : str or callable, optional
         Also judge an estimator of your own: a program that reads the experiment folder ``{folder}`` and writes
         ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md); or a
-        function as `estimator` describes it, which states a standard deviation with each value. A function is called in
-        this process, for one run at a time.
+        function as `estimator` describes it, or its name if it is registered, which states a standard deviation with
+        each value. A function is called in this process, for one run at a time.
     estimator_name : str
         Its name in results; the name of its file, or the function's.
     estimator_seconds, estimator_megabytes : float
@@ -162,15 +169,15 @@ def validate(scenario: Scenario, *, estimator_command: Union[str, Estimator, Non
     -----
     docs/guide/trust.md; the least standard deviation is the Cramér-Rao bound (Rao 1945) of these frames and this noise.
     """
-    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
-        outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as given:
+        outcome, analysis = _glidelab.validate(given_scenario(scenario), given.command, checked_seed(seed), job_count(jobs),
                                                teller(progress))
     made = Made(outcome)
     found = Result(made).to_dict()
     names = ("truth", "value", "sd", "error", "cramer_rao_sd")
     return Validation(made, tuple(
         Recovery(one["configuration"], one["estimator"], one["quantity"], *(one.get(name) for name in names))
-        for one in found["quantities"]), found["frames"], found["detected"], analysis, outside_runs(found))
+        for one in found["quantities"]), found["frames"], found["detected"], analysis, outside_runs(found, given.calls_s))
 
 
 @dataclass(frozen=True)
@@ -319,10 +326,10 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     """
     bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
     noise = optional_real("noise_m", noise_m, "a number of metres, or None")
-    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as given:
         made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
                                        reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
-                                       command, checked_seed(seed), job_count(jobs), teller(progress)))
+                                       given.command, checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     rows = []
     for one in found["quantities"]:
@@ -331,7 +338,7 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
             one["configuration"], one["estimator"], one["quantity"], one.get("truth"), one["determined"],
             one["covered"], one.get("bias"), one.get("sd"), one.get("stated_sd"), one.get("coverage"),
             None if interval is None else (interval[0], interval[1]), one.get("p_value")))
-    return Coverage(made, found["replicates"], tuple(rows), outside_runs(found))
+    return Coverage(made, found["replicates"], tuple(rows), outside_runs(found, given.calls_s))
 
 
 @dataclass(frozen=True)

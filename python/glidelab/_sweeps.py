@@ -323,9 +323,9 @@ def sweep(file: PathLike, folder: PathLike, *, estimator_command: Union[str, Est
     -----
     docs/reference/sweep.md. The least standard deviation is the Cramér-Rao bound (Rao 1945).
     """
-    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
-        made = Made(_glidelab.sweep(file_name("file", file), file_name("folder", folder, "the name of a folder"), command,
-                                    checked_seed(seed), job_count(jobs), teller(progress)))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as given:
+        made = Made(_glidelab.sweep(file_name("file", file), file_name("folder", folder, "the name of a folder"),
+                                    given.command, checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return Sweep(made, found["name"], found["runs"], found["failed"], os.path.join(os.fspath(folder), "sweep.sqlite"),
-                 outside_runs(found))
+                 outside_runs(found, given.calls_s))

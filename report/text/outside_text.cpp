@@ -25,6 +25,8 @@ std::string failure_words(fit::OutsideFailure failure, std::size_t runs) {
   switch (failure) {
     case fit::OutsideFailure::exit_status:
       return fmt::format("{} ended with an exit status other than 0", runs);
+    case fit::OutsideFailure::raised:
+      return fmt::format("{} raised an exception", runs);
     case fit::OutsideFailure::signal:
       return fmt::format("{} {} ended by a signal", runs, was);
     case fit::OutsideFailure::time_out:
@@ -37,6 +39,18 @@ std::string failure_words(fit::OutsideFailure failure, std::size_t runs) {
       break;
   }
   return fmt::format("{} {} done", runs, was);
+}
+
+/// "2 ended with an exit status other than 0, the first: exit status 1: skipped: no pynumdiff; 1 was not done in time,
+/// …".
+std::string kinds_text(const fit::OutsideTally& tally) {
+  std::string kinds;
+  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
+    kinds += (kinds.empty() ? "" : "; ") + failure_words(failure, kind.count);
+    if (failure != fit::OutsideFailure::no_output)
+      kinds += fmt::format(", the first: {}", base::printable_text(kind.first));
+  });
+  return kinds;
 }
 
 }  // namespace
@@ -59,16 +73,10 @@ Json outside_json(const fit::OutsideTally& tally) {
 }
 
 std::string outside_text(const fit::OutsideTally& tally) {
-  std::string kinds;
-  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
-    kinds += (kinds.empty() ? "" : "; ") + failure_words(failure, kind.count);
-    if (failure != fit::OutsideFailure::no_output)
-      kinds += fmt::format(", the first: {}", base::printable_text(kind.first));
-  });
-  const std::string failed =
-      tally.failed() == 0
-          ? fmt::format("{} {}, none failed", tally.runs, tally.runs == 1 ? "run" : "runs")
-          : fmt::format("{} of {} {} failed ({})", tally.failed(), tally.runs, tally.runs == 1 ? "run" : "runs", kinds);
+  const std::string failed = tally.failed() == 0
+                                 ? fmt::format("{} {}, none failed", tally.runs, tally.runs == 1 ? "run" : "runs")
+                                 : fmt::format("{} of {} {} failed ({})", tally.failed(), tally.runs,
+                                               tally.runs == 1 ? "run" : "runs", kinds_text(tally));
   const std::string times = tally.longest_s > 0.0
                                 ? fmt::format("; {} s a run, {} s at most", base::number_text(tally.seconds, 2),
                                               base::number_text(tally.longest_s, 2))
@@ -78,12 +86,8 @@ std::string outside_text(const fit::OutsideTally& tally) {
 
 std::string outside_failed(const fit::OutsideTally& tally) {
   if (tally.failed() == 0) return {};
-  std::string kinds;
-  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
-    kinds += (kinds.empty() ? "" : "; ") + failure_words(failure, kind.count);
-  });
   return fmt::format("“{}” failed in {} of {} {}: {}.", base::printable_text(tally.name), tally.failed(), tally.runs,
-                     tally.runs == 1 ? "run" : "runs", kinds);
+                     tally.runs == 1 ? "run" : "runs", kinds_text(tally));
 }
 
 }  // namespace glidelab::report

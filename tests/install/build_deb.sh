@@ -81,4 +81,33 @@ said=$(PYTHONPATH=$work/module/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTE
 import glidelab
 print(glidelab.__file__, len(glidelab.simulate('$usr/share/glidelab/scenarios/tutorial.toml').clips))")
 [ "$said" = "$work/module/usr/lib/python3/dist-packages/glidelab/__init__.py 4" ] || fail "the module says $said"
+# Without the program's package there are no scenarios; with it, the first cell of a notebook runs, and what the others name is there.
+cat > "$work/notebooks.py" <<'end'
+import json, re, sys
+from pathlib import Path
+import glidelab
+for path in sorted(Path(sys.argv[1]).glob("*.ipynb")):
+    cells = ["".join(cell["source"]) for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == "code"]
+    named = re.findall(r'"([\w/-]+\.toml)"', "\n".join(cells))
+    assert all((glidelab.scenarios_folder() / name).is_file() for name in named), (path, named)
+    if path.stem == "paper_in_ten_lines":
+        exec(cells[0])
+        print(len(simulation.clips), glidelab.scenarios_folder())
+end
+[ -n "$(field Recommends | grep glidelab)" ] || fail "the module does not recommend the program: $(field Recommends)"
+if [ ! -e /usr/share/glidelab/scenarios ]; then
+  said=$(PYTHONPATH=$work/module/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
+import glidelab
+try:
+    print(glidelab.scenarios_folder())
+except glidelab.InputError as error:
+    print(error)")
+  [[ $said = *"found no such folder, expected"*/usr/share/glidelab/scenarios* ]] || fail "without the scenarios it says $said"
+fi
+dpkg-deb --extract "$work/packed/glidelab_${version}_$architecture.deb" "$work/module"
+cd "$work/module/usr/share/doc/glidelab/examples/notebooks"
+said=$(PYTHONPATH=$work/module/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$work/notebooks.py" . 2>&1) ||
+  fail "a notebook says $said"
+[ "$said" = "6 $work/module/usr/share/glidelab/scenarios" ] || fail "a notebook says $said"
+cd /
 [ -e "$work/module/usr/lib/python3/dist-packages/glidelab/py.typed" ] || fail "the module has no py.typed"

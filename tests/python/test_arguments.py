@@ -1,7 +1,10 @@
 """Wrong input ends in one exception that says what was found where, and what is expected there."""
 
 import math
+import os
 import pickle
+from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -145,12 +148,13 @@ class WrongInput(InFolder):
         for call in (lambda: glidelab.analyze(t, masked), lambda: glidelab.diagnose(t, masked),
                      lambda: glidelab.analyze(glidelab.Track(t, masked)), lambda: glidelab.smooth(t, masked, 0.02),
                      lambda: glidelab.choose_bandwidth(t, masked), lambda: glidelab.position_noise(t, masked)):
-            error = self.refused(call, key="x_m[7]", found="a masked value")
-            self.assertEqual(len(error.issues), masked.mask.sum())
-        self.refused(lambda: glidelab.smooth(t, x, 0.02, at_s=np.ma.masked_array(t, t > 1.0)), found="a masked value")
+            error = self.refused(call, key="x_m[7]", found="a masked value, and 3 more")
+            self.assertEqual((len(error.issues), masked.mask.sum()), (1, 4))
+        self.refused(lambda: glidelab.smooth(t, x, 0.02, at_s=np.ma.masked_array(t, t == t[-1])), found="a masked value")
         self.assertEqual(glidelab.analyze(t, np.ma.masked_array(x)).to_json(), glidelab.analyze(t, x).to_json())
         image = np.ma.masked_array(np.zeros((9, 9), np.uint8), mask=np.eye(9, dtype=bool))
-        self.refused(lambda: glidelab.fit_marker(image, (4, 4), 2), key="image[0, 0]", found="a masked value")
+        self.refused(lambda: glidelab.fit_marker(image, (4, 4), 2), key="image[0, 0]",
+                     found="a masked value, and 8 more")
         self.refused(lambda: glidelab.calibrate([image] * 3, (9, 6), 0.04), key="images[0][0, 0]")
 
     def test_an_argument_that_does_not_apply_says_why(self):
@@ -237,6 +241,26 @@ class WrongInput(InFolder):
         error = self.refused(lambda: glidelab.analyze([0.0], [1.0]))
         again = pickle.loads(pickle.dumps(error))
         self.assertEqual((str(again), again.issues), (str(error), error.issues))
+
+
+class Scenarios(InFolder):
+    def test_they_are_those_of_the_checkout_in_which_python_runs(self):
+        before = Path.cwd()
+        self.addCleanup(os.chdir, before)
+        made = self.folder.resolve() / "scenarios"
+        (self.folder / "below").mkdir()
+        made.mkdir()
+        for folder, found in ((SOURCE, SOURCE / "scenarios"), (SOURCE / "docs", SOURCE / "scenarios")):
+            os.chdir(folder)
+            self.assertEqual(glidelab.scenarios_folder(), found)
+        os.chdir(self.folder / "below")
+        with mock.patch.object(Path, "is_file", lambda path: False):
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.scenarios_folder()
+        self.assertEqual((caught.exception.key, caught.exception.found), ("scenarios", "no such folder"))
+        self.assertIn(str(self.folder.resolve() / "below"), caught.exception.expected)
+        (made / "tutorial.toml").write_text("")
+        self.assertEqual(glidelab.scenarios_folder(), made)
 
 
 class DictsAsToml(InFolder):

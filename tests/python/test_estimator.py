@@ -317,6 +317,9 @@ class AsACommand(InFolder):
             one, other = ({key: value for key, value in found.to_dict().items() if key not in ("outside", "wall_s")}
                           for found in (of_function, of_program))
             self.assertEqual(one, other)
+            for seconds in (of_function.outside.mean_s, of_function.outside.longest_s):
+                self.assertGreater(seconds, 0.0)
+            self.assertLessEqual(of_function.outside.mean_s, of_function.outside.longest_s)
         again = glidelab.sweep(self.folder / "sweep.toml", self.folder / "1", estimator_command=scaled)  # goes on
         self.assertEqual(again.to_dict()["overall"], of_function.to_dict()["overall"])
 
@@ -330,17 +333,49 @@ class AsACommand(InFolder):
         def leaving(tracks):
             raise SystemExit(3)
 
-        for function, said in ((raising, r"ValueError: two lines \(test_estimator\.py, line \d+\)$"),
-                               (uncertain, "mu: found no standard deviation"), (leaving, "SystemExit: 3")):
+        for function, kind, said in (
+                (raising, "raised", r"ValueError: two lines \(test_estimator\.py, line \d+\)$"),
+                (uncertain, "bad_output", "mu: found no standard deviation"), (leaving, "raised", "SystemExit: 3")):
             with self.subTest(function.__name__):
-                outside = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_command=function).outside
-                self.assertEqual((outside.runs, outside.failed), (2, 2))
-                self.assertRegex(outside.failures["exit_status"].first, "^exit status 1: " + said)
+                covered = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_command=function)
+                outside = covered.outside
+                self.assertEqual((outside.runs, outside.failed, list(outside.failures)), (2, 2, [kind]))
+                self.assertEqual(outside.command, f"the function {function.__name__}")
+                self.assertRegex(outside.failures[kind].first, "^" + said)
+                self.assertIn(f"“{function.__name__}” failed in 2 of 2 runs: 2 ", str(covered))
+                self.assertIn(outside.failures[kind].first, " ".join(str(covered).split()))
         released = threading.Event()
         outside = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_seconds=0.3,
                                     estimator_command=lambda tracks: released.wait(60.0)).outside
         released.set()
         self.assertEqual((outside.name, outside.failures["time_out"].count), ("lambda", 2))
+
+    def test_a_registered_one_goes_by_its_name(self):
+        from glidelab._outside import registered
+        self.addCleanup(registered.clear)
+        registered.clear()
+
+        @glidelab.estimator
+        def of_the_class(tracks):
+            return scaled(tracks)
+
+        mine = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, seed=5, estimator_command="of_the_class")
+        same = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, seed=5, estimator_command=of_the_class)
+        self.assertEqual((mine.outside.name, mine.outside.failed), ("of_the_class", 0))
+        self.assertEqual(mine.rows, same.rows)
+        judged = glidelab.judge(SCENARIO, "of_the_class", noise_m=2e-5, replicates=2)
+        self.assertEqual({row.estimator for row in judged.rows}, {"of_the_class"})
+        (self.folder / "short.toml").write_text(
+            f'format = 1\nname = "short"\nscenario = "{SCENARIO}"\nreplicates = 1\nseed = 2\nestimators = '
+            '["phase-diagram"]\n[tracks]\nnoise_m = 2e-5\n[[vary]]\nkey = "camera.frame_rate_hz"\nvalues = [100.0]\n')
+        swept = glidelab.sweep(self.folder / "short.toml", self.folder / "swept", estimator_command="of_the_class")
+        self.assertEqual((swept.outside.name, swept.outside.runs), ("of_the_class", 1))
+        for call in (lambda name: glidelab.coverage(SCENARIO, noise_m=2e-5, estimator_command=name),
+                     lambda name: glidelab.validate(SCENARIO, estimator_command=name)):
+            with self.assertRaises(glidelab.InputError) as caught:
+                call("of_the_clas")
+            self.assertEqual(caught.exception.key, "estimator_command")
+            self.assertIn("of_the_class", caught.exception.expected)
 
     def test_it_is_not_judged_under_one_name_twice_at_once(self):
         def inner(tracks):

@@ -160,6 +160,44 @@ class CtrlC(unittest.TestCase):
         presser.join()
         self.assertEqual(len(glidelab.analyze(t, x).clips), 1)
 
+    def test_an_interrupt_ends_the_smoothers_and_the_bandwidth_rules(self):
+        import _thread
+        import functools
+        import sys
+        import threading
+        from unittest import mock
+        from glidelab import _glidelab
+        even = np.arange(200_000) / 100.0
+        uneven = np.cumsum(np.random.default_rng(1).uniform(0.004, 0.016, 60_000))
+        before = sys.getswitchinterval()
+        self.addCleanup(sys.setswitchinterval, before)
+        for name, call in (("smooth_by", lambda: glidelab.smooth(even, np.sin(even), smoother="kalman")),
+                           ("smooth_by", lambda: glidelab.smooth(even, np.sin(even), smoother="spline")),
+                           ("smooth", lambda: glidelab.smooth(uneven, np.sin(uneven), 2.0)),
+                           ("smooth_at", lambda: glidelab.smooth(uneven, np.sin(uneven), 2.0, at_s=uneven[:-1] + 1e-4)),
+                           ("choose_bandwidth", lambda: glidelab.choose_bandwidth(uneven, np.sin(uneven), "cv"))):
+            started, work, returned = threading.Event(), getattr(_glidelab, name), []
+
+            def press(started=started):
+                started.wait(60.0)
+                _thread.interrupt_main()
+
+            def pressed(*given, work=work, started=started, returned=returned):
+                """The key is pressed once the work has let go of the interpreter. What the work returns nevertheless is in
+                `returned` before Python looks at the signal."""
+                sys.setswitchinterval(1000.0)
+                started.set()
+                returned.extend(map(functools.partial(work, *given[:-1]), given[-1:]))
+
+            presser = threading.Thread(target=press)
+            presser.start()
+            with self.subTest(name), mock.patch.object(_glidelab, name, pressed):
+                with self.assertRaises(KeyboardInterrupt):
+                    call()
+                self.assertEqual(len(returned), 0)
+            sys.setswitchinterval(before)
+            presser.join()
+
     def test_what_the_progress_function_raises_comes_out(self):
         t, x = damped()
 

@@ -1,6 +1,7 @@
 """What a notebook shows of a result: tables with its numbers, and plots where matplotlib is; and how columns are labelled."""
 
 import csv
+import html
 import json
 import re
 import unittest
@@ -272,10 +273,58 @@ class Shown(InFolder):
         self.assertEqual(ax.get_ylabel(), "error of µ")
         self.assertIn(PLOT, validation._repr_html_())
         self.assertIn("<td>µ</td>", validation._repr_html_())
+        self.assertIn("<td>+1.00</td><td>0.0005</td>", validation._repr_html_())
+        self.assertIn(html.escape(" ".join(str(validation).partition("\n\n")[0].split())), validation._repr_html_())
         requirement = glidelab.Requirement(made, "r", (glidelab.Candidate("c", True, "yes", 1.0, 2.0, 1e-5, (1e-4,),
                                                                           (1e-5,), (5e-5,)),), ("mu",))
         self.assertEqual(len(requirement.plot()), 1)
         self.assertIn(PLOT, requirement._repr_html_())
+
+    def test_a_diagnosis_shows_all_its_tables(self):
+        t, x = damped()
+        diagnosis = glidelab.diagnose([glidelab.Track(t, x, 0.3, 4.3, f"clip-{i}") for i in range(2)])
+        said = self.shown(diagnosis)
+        for part in (diagnosis.summary, diagnosis.next_experiment, *diagnosis.notes,
+                     *(one["id"] for one in diagnosis.to_dict()["ranking"]),
+                     *(str(one.mu) for one in diagnosis.recovered)):
+            self.assertIn(html.escape(part), said)
+
+    @needs("matplotlib")
+    def test_a_blind_run_s_bars_and_counts_are_its_numbers(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        made = glidelab._results.Made.__new__(glidelab._results.Made)
+        targets = (glidelab.BlindTarget("finds it", 4, 3, 0.75, 0.9, None, False),
+                   glidelab.BlindTarget("no false alarm", 2, 2, 1.0, 0.95, None, True),
+                   glidelab.BlindTarget("seconds", None, None, 3.0, None, 60.0, True))
+        cases = tuple(glidelab.BlindCase(i, kind, (), verdict, ()) for i, (kind, verdict) in enumerate(
+            [("single", "effect")] * 3 + [("single", "unknown"), ("none", "none"), ("none", "none")]))
+        blind = glidelab.Blind(made, 1, 0, targets, 0.1, cases, "")
+        shares, counts = blind.plot()
+        self.assertEqual([bar.get_width() for bar in shares.patches], [75.0, 100.0])
+        self.assertEqual([line.get_xdata()[0] for line in shares.lines], [90.0, 95.0])
+        self.assertEqual(counts.images[0].get_array().tolist(), [[2, 0, 0], [0, 3, 1]])
+        self.assertEqual([text.get_text() for text in counts.get_yticklabels()], ["none", "single"])
+        self.assertEqual([text.get_text() for text in counts.get_xticklabels()], ["none", "effect", "unknown"])
+        said = self.shown(blind)
+        self.assertIn(PLOT, said)
+        self.assertIn("<td>single</td><td>0</td><td>3</td><td>1</td>", said)
+
+    def test_a_smoother_without_a_bandwidth_and_without_breaks_names_neither(self):
+        t, x = damped()
+        said = str(glidelab.smooth(t[:60], x[:60], smoother="kalman"))
+        self.assertNotIn("bandwidth (s)", said)
+        self.assertNotIn("breaks (s)", said)
+        self.assertIn("breaks (s)", str(self.smooth))
+        self.assertRegex(str(self.local), r"bandwidth \(s\) +0\.03\n")
+
+    @needs("pandas")
+    def test_a_column_of_numbers_is_one_even_where_all_are_missing(self):
+        found = tuple(glidelab.Recovery("m1", "a", "mu", 0.01, value, 0.001, 0.001, None) for value in (0.011, None))
+        table = glidelab.Validation(self.coverage._made, found, 1, 1, "{}").to_frame()
+        for name in ("value", "cramer_rao_sd"):
+            self.assertEqual(table[name].dtype, np.float64)
+        self.assertTrue(table["cramer_rao_sd"].isna().all())
 
     def test_an_explanation_shows_itself_as_it_reads(self):
         said = glidelab.explain(self.coverage)

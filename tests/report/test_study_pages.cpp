@@ -204,7 +204,10 @@ TEST_CASE("the first line of coverage says how often an outside estimator failed
                                    {{fit::OutsideFailure::signal, "signal 11 (SIGSEGV)", 1.0},
                                     {fit::OutsideFailure::no_output, "no results.json in {out}", 1.0},
                                     {fit::OutsideFailure::none, "", 1.0}});
-  const std::string failed = "“mine” failed in 2 of 3 runs: 1 was ended by a signal; 1 left no results.json in {out}.";
+  const std::string failed =
+      "“mine” failed in 2 of 3 runs: 1 was ended by a signal, the first: signal 11 (SIGSEGV); 1 left no results.json "
+      "in "
+      "{out}.";
   CHECK(report::coverage_answer(coverage) == failed);  // nothing else to say
   coverage.rows = {row("phase-diagram", "mu", 0.0028, 0.0028), row("mine", "mu", 0.001, 0.001)};
   for (validate::CoverageRow& one : coverage.rows) one.levels = {{0.95, 190, 0.95, 0.91, 0.98, 1.0}};

@@ -50,9 +50,9 @@ void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string
         base::Issue{"", 0, "bandwidth", fmt::format("{}", *bandwidth_s), "a time in seconds above 0"});
   }
   if (!rule.empty() && !find_bandwidth_rule(rule)) {
-    throw base::InputError(base::Issue{
-        "", 0, "bandwidth", rule,
-        fmt::format("{}{}", fmt::join(bandwidth_choices(), ", "), base::did_you_mean(rule, bandwidth_choices()))});
+    throw base::InputError(base::Issue{"", 0, "bandwidth", fmt::format("\"{}\"", rule),
+                                       fmt::format("one of {}{}", fmt::join(bandwidth_choices(), ", "),
+                                                   base::did_you_mean(rule, bandwidth_choices()))});
   }
 }
 

@@ -20,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/long_work.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
 #include "core/result/strength.h"
@@ -36,6 +37,7 @@ struct BandwidthProblem {
   std::vector<MotionPart> parts;
   PositionNoise noise;
   double step_s = 0.0;  ///< median time step
+  base::StopCheck stop_check = base::never_stop;
 };
 
 struct LocalBandwidth {

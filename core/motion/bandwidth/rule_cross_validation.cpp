@@ -29,6 +29,7 @@ std::optional<Residuals> residuals_at(const BandwidthScan& scan, double bandwidt
   const std::vector<LocalPolynomial> smoothers = scan.smoothers(bandwidth_s, kernel);
   Residuals found;
   for (const Probe& probe : scan.probes()) {
+    scan.problem().stop_check();
     const auto row = smoothers[probe.part].row_of_point(probe.point);
     if (!row) return {};
     found.residual.push_back(scan.position(probe) - weighted_sums(*row, scan.problem().parts[probe.part].x_m).x_m);

@@ -35,6 +35,7 @@ Estimates estimates_of(const BandwidthScan& scan) {
     auto& a = estimates.a.emplace_back();
     auto& of_a = estimates.variance.emplace_back();
     for (const Probe& probe : scan.probes()) {
+      scan.problem().stop_check();
       const auto row = smoothers[probe.part].row_of_point(probe.point);
       a.push_back(row ? weighted_sums(*row, scan.problem().parts[probe.part].x_m).a_m_s2 : 0.0);
       of_a.push_back(row ? variance.of_a(*row) : std::numeric_limits<double>::infinity());

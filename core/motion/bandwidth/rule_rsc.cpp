@@ -57,7 +57,10 @@ std::optional<BandwidthPick> by_residual_squares(const BandwidthProblem& problem
   std::vector<double> criterion;
   for (const double h : scan.grid()) {
     double sum = 0.0;
-    for (const Probe& probe : scan.probes()) sum += residual_squares(problem.parts[probe.part], probe.point, h);
+    for (const Probe& probe : scan.probes()) {
+      problem.stop_check();
+      sum += residual_squares(problem.parts[probe.part], probe.point, h);
+    }
     criterion.push_back(scan.probes().empty() ? std::numeric_limits<double>::quiet_NaN() : sum);
   }
   const auto best = least(criterion);

@@ -188,7 +188,7 @@ void LocalPolynomial::filter(std::span<const double> values, std::size_t from, s
 }
 
 void LocalPolynomial::fit_end(const GridEnds& ends, std::span<const double> values, std::size_t from, std::size_t to,
-                              std::vector<std::optional<SmoothedPoint>>& out) const {
+                              std::vector<std::optional<SmoothedPoint>>& out, const base::StopCheck& stop_check) const {
   const std::size_t lags = ends.lags(), n = t_s_.size();
   const double origin = values[from];  // relative to it, so that a distant origin costs no digits
   // From `lags` before the first point to `lags` after the last of eight; 0 where the series does not go.
@@ -198,6 +198,7 @@ void LocalPolynomial::fit_end(const GridEnds& ends, std::span<const double> valu
     padded[i + lags - from] = values[i] - origin;
   }
   for (std::size_t start = from; start < to; start += kGridLanes) {
+    stop_check();
     std::array<std::size_t, kGridLanes> before{}, after{};
     const std::size_t count = std::min(kGridLanes, to - start);
     for (std::size_t i = 0; i < kGridLanes; ++i) {
@@ -216,7 +217,9 @@ void LocalPolynomial::fit_end(const GridEnds& ends, std::span<const double> valu
   }
 }
 
-std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<const double> values) const {
+std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<const double> values,
+                                                                  const base::StopCheck& stop_check) const {
+  constexpr std::size_t kUnchecked = 512 * kGridLanes;  // points: whole blocks, so that the bits stay the same
   assert(values.size() == t_s_.size());
   std::vector<std::optional<SmoothedPoint>> out(t_s_.size());
   const auto end_of = [&](std::size_t j, bool (LocalPolynomial::*alike)(std::size_t) const) {
@@ -225,12 +228,15 @@ std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<cons
   };
   std::optional<GridEnds> ends;
   for (std::size_t j = 0; j < t_s_.size();) {
+    stop_check();
     if (const std::size_t to = end_of(j, &LocalPolynomial::interior); to > j) {
-      filter(values, j, to, out);
-      j = to;
+      for (; j < to; j = std::min(j + kUnchecked, to)) {
+        stop_check();
+        filter(values, j, std::min(j + kUnchecked, to), out);
+      }
     } else if (const std::size_t end = end_of(j, &LocalPolynomial::cut_off); end > j) {
       if (!ends) ends.emplace(kernel_, step_s_ / options_.bandwidth_s, options_.bandwidth_s);
-      fit_end(*ends, values, j, end, out);
+      fit_end(*ends, values, j, end, out, stop_check);
       j = end;
     } else {
       if (const auto row = general_row(t_s_[j], j)) out[j] = weighted_sums(*row, values);

@@ -34,6 +34,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/long_work.h"
+
 namespace glidelab::core {
 
 class GridEnds;
@@ -83,7 +85,8 @@ class LocalPolynomial {
   std::optional<KernelRow> row_of_point(std::size_t j) const;
 
   /// At the times of all points; values.size() is that of the times (asserted).
-  std::vector<std::optional<SmoothedPoint>> smooth(std::span<const double> values) const;
+  std::vector<std::optional<SmoothedPoint>> smooth(std::span<const double> values,
+                                                   const base::StopCheck& stop_check = base::never_stop) const;
 
   double bandwidth_s() const { return options_.bandwidth_s; }
   const PolynomialOptions& options() const { return options_; }
@@ -96,7 +99,7 @@ class LocalPolynomial {
   void filter(std::span<const double> values, std::size_t from, std::size_t to,
               std::vector<std::optional<SmoothedPoint>>& out) const;
   void fit_end(const GridEnds& ends, std::span<const double> values, std::size_t from, std::size_t to,
-               std::vector<std::optional<SmoothedPoint>>& out) const;
+               std::vector<std::optional<SmoothedPoint>>& out, const base::StopCheck& stop_check) const;
 
   std::vector<double> t_s_;
   PolynomialOptions options_;

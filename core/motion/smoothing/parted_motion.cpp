@@ -99,7 +99,10 @@ double PartedMotion<N>::noise_variance(const ChainFit& fit) const {
 template <int N>
 ChainFit PartedMotion<N>::fit(const Smoothness& how) const {
   ChainFit all;
-  for (const WienerChain<N>& chain : chains_) all += chain.fit(ratio(how));
+  for (const WienerChain<N>& chain : chains_) {
+    parts_.input.stop_check();
+    all += chain.fit(ratio(how));
+  }
   return all;
 }
 
@@ -123,7 +126,10 @@ double PartedMotion<N>::minus_two_log_likelihood(const Smoothness& how) const {
 template <int N>
 std::vector<ChainPosterior<N>> PartedMotion<N>::posteriors(const Smoothness& how) const {
   std::vector<ChainPosterior<N>> all;
-  for (const WienerChain<N>& chain : chains_) all.push_back(chain.posterior(ratio(how)));
+  for (const WienerChain<N>& chain : chains_) {
+    parts_.input.stop_check();
+    all.push_back(chain.posterior(ratio(how)));
+  }
   return all;
 }
 

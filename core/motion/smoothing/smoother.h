@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/long_work.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/result/strength.h"
 
@@ -37,6 +38,7 @@ struct SmoothingInput {
   bool rate_in_rows = false;               ///< whether rows include the effect of the noise through the rate k, for a
                                            ///< covariance
   bool simultaneous = false;               ///< whether the simultaneous band is requested
+  base::StopCheck stop_check = base::never_stop;
 };
 
 /// Positions that kalman and spline need in one part of the motion, and on each side of a break.

@@ -93,6 +93,7 @@ class LocalCubicSmoother final : public Smoother {
                              std::sqrt(covariance(2, 2))};
       };
       for (std::size_t j = 0; j < part.count; ++j) {
+        input.stop_check();
         const auto row = of_all(cubic.row_of_point(j));
         if (row) made.strength.parameters += row->weights->x[part.first + j - row->first];
         made.points[part.first + j] = state(row, input.x_m);

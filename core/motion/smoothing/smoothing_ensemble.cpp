@@ -94,13 +94,15 @@ double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std:
   return zero_of(outside, 0.999 * low, 1.001 * high, 30, ensemble.nodes[p][k].t_s) / base::kNormal95;
 }
 
-std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble) {
+std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble,
+                                                             const base::StopCheck& stop_check) {
   std::vector<std::vector<Eigen::Array3d>> made;
   const double wider = base::student_t_quantile(ensemble.freedom, 0.975) / base::kNormal95;
   for (std::size_t p = 0; p < ensemble.nodes.size(); ++p) {
     const std::vector<ChainNode>& nodes = ensemble.nodes[p];
     std::vector<Eigen::Array3d> sd(nodes.size());
     for (std::size_t k = 0; k < nodes.size(); ++k) {
+      stop_check();
       for (int d = 0; d < 3; ++d) sd[k][d] = wider * standard_deviation(ensemble, p, k, d);
     }
     std::vector<double> more(nodes.size(), 0.0);
@@ -120,9 +122,11 @@ std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnse
   return made;
 }
 
-double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<std::vector<Eigen::Array3d>>& sd) {
+double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<std::vector<Eigen::Array3d>>& sd,
+                           const base::StopCheck& stop_check) {
   std::vector<std::vector<std::vector<Crossing>>> of;
   for (const EnsembleMember& member : ensemble.members) {
+    stop_check();
     of.emplace_back();
     for (std::size_t p = 0; p < ensemble.nodes.size(); ++p) {
       std::vector<Crossing> part;
@@ -140,6 +144,7 @@ double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<
   const auto excess = [&](double c) {
     double outside = 0.0;
     for (std::size_t m = 0; m < of.size(); ++m) {
+      stop_check();
       outside += ensemble.members[m].weight * -std::expm1(-crossings(of[m], c, ensemble.freedom));
     }
     return std::log(outside / 0.05);

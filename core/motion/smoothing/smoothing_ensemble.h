@@ -13,6 +13,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/long_work.h"
 #include "core/motion/smoothing/wiener_chain.h"
 
 namespace glidelab::core {
@@ -41,8 +42,10 @@ struct SmoothingEnsemble {
 
 /// Standard deviations of x, v and a at every node. If a node may lie on either side of a break, given the uncertainty
 /// of the time of v = 0, a of both sides lies within ± 1.96 of them.
-std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble);
+std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble,
+                                                             const base::StopCheck& stop_check = base::never_stop);
 
-double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<std::vector<Eigen::Array3d>>& sd);
+double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<std::vector<Eigen::Array3d>>& sd,
+                           const base::StopCheck& stop_check = base::never_stop);
 
 }  // namespace glidelab::core

@@ -25,7 +25,8 @@ constexpr double kRowsOfParameter = 10.0;  // for each effective parameter of th
 constexpr int kLeastOrder = 3, kOrders = 3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostOrderDeficit = 20.0;  // of -2 log: orders that are less probable by a factor e^-10 are left out
-constexpr double kLeastWeight = 1e-3;       // of a member, over the most probable one
+constexpr double kLeastWeight = 1e-3;       // of a member, over the likelihood of the most probable one; but
+constexpr double kLeastShare = 0.1;         // of the heaviest member, where the steps of log tau make all of them light
 constexpr double kBreakSettled = 1e-4;      // of a step
 constexpr int kBreakPasses = 6, kBreakSearches = 3;
 constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): a value of 1 occasionally follows
@@ -92,17 +93,29 @@ double settle_breaks(MotionParts& parts, const Choice& choice) {
   return first;
 }
 
-/// Members of an order with the weights exp(-minus_two_log / 2), about `best`.
+/// Over the likelihood of the most probable process.
+double weight_of(const AtTau& at, double best) {
+  return std::exp(-0.5 * (at.minus_two_log - best));
+}
+
+/// The processes of one order that may be members: those around the most likely tau, and last the one without noise.
+struct Candidates {
+  Choice choice;
+  std::vector<AtTau> all;
+};
+
+/// Adds those of an order that are heavy enough, with their weights; returns the one that stands for the order with its
+/// weight, which is negative where there is none.
 template <int N>
-std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const AtTau& likeliest_one, double best,
-                                     SmoothingEnsemble& ensemble) {
+std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const Candidates& candidates, double best,
+                                     double least_weight, SmoothingEnsemble& ensemble) {
+  const AtTau& likeliest_one = candidates.choice.at;
+  const std::vector<AtTau>& all = candidates.all;
   std::pair<double, AtTau> chosen{-1.0, likeliest_one};
   double of_sum = 0.0;
-  std::vector<AtTau> all = spread(motion, likeliest_one);
-  all.push_back(exact(motion, likeliest_one));
   for (const AtTau& at : all) {
-    const double weight = std::exp(-0.5 * (at.minus_two_log - best));
-    if (weight < kLeastWeight) continue;
+    const double weight = weight_of(at, best);
+    if (weight < least_weight) continue;
     if (&at == &all.back()) {
       if (weight > of_sum) chosen = {weight, at};
     } else {
@@ -296,11 +309,24 @@ class WienerSmoother final : public Smoother {
     }
     SmoothingEnsemble ensemble;
     const double best = likeliest(orders).at.minus_two_log;
-    Choice most;
-    double most_weight = -1.0;
+    std::vector<Candidates> candidates;
+    double heaviest = 0.0;
     for (const Choice& choice : orders) {
       for_order(choice.order, [&](auto order) {
-        const auto [weight, at] = add_members<order>(PartedMotion<order>(parts), choice.at, best, ensemble);
+        const PartedMotion<order> motion(parts);
+        candidates.push_back({choice, spread(motion, choice.at)});
+        candidates.back().all.push_back(exact(motion, choice.at));
+      });
+      for (const AtTau& at : candidates.back().all) heaviest = std::max(heaviest, weight_of(at, best));
+    }
+    // The more positions, the narrower log tau and its steps, and the lighter every single member.
+    const double least_weight = std::min(kLeastWeight, kLeastShare * heaviest);
+    Choice most;
+    double most_weight = -1.0;
+    for (const Candidates& of_order : candidates) {
+      for_order(of_order.choice.order, [&](auto order) {
+        const auto [weight, at] =
+            add_members<order>(PartedMotion<order>(parts), of_order, best, least_weight, ensemble);
         if (weight <= most_weight) return;
         most_weight = weight;
         most = {order, at};
@@ -372,7 +398,7 @@ class WienerSmoother final : public Smoother {
     strength.parameters = sums.trace;
     strength.bandwidth_s = like_bandwidth(posteriors, parts.step_s);
     if (parts.breaks()) strength.jump_sd_m_s2 = strength.noise_sd_m * chosen.at.how.jump_1_s2;
-    const auto sd = standard_deviations(ensemble);
+    const auto sd = standard_deviations(ensemble, parts.input.stop_check);
     for (std::size_t p = 0; p < parts.parts.size(); ++p) {
       const SmoothedPart& part = parts.parts[p];
       strength.breaks_s.insert(strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
@@ -388,7 +414,7 @@ class WienerSmoother final : public Smoother {
         fill(of_other[p], sd[p], parts.parts[p], made.along, made.along_at);
       }
     }
-    if (parts.input.simultaneous) strength.simultaneous_a = simultaneous_factor(ensemble, sd);
+    if (parts.input.simultaneous) strength.simultaneous_a = simultaneous_factor(ensemble, sd, parts.input.stop_check);
   }
 
   /// The rows of a process, and its points if they are not those of the smoothed motion.

@@ -1,4 +1,5 @@
 /// glidelab challenge as a user sees it: made, answered, scored.
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -73,6 +74,28 @@ echo "{\"format\": 1, \"configurations\": [{\"clips\": [$clips], \"k_over_m_1_s\
   CHECK(altered.status == 1);
   CHECK_THAT(altered.err, Contains("the truth that was sealed with"));
   CHECK_FALSE(fs::exists(temp / "x"));
+}
+
+TEST_CASE("a challenge without a seed has one of its own, with which alone it can be made again") {
+  const tests::TempDir temp;
+  const auto made = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"challenge", "make", name, "--cases", "1", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const tests::ProcessResult result = tests::glidelab(arguments, temp.path());
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    CHECK_THAT(result.out, Contains(name + ".truth.json, with the seed: keep it secret"));
+    return base::read_file(temp / (name + ".truth.json"));
+  };
+  // Two draws of 53 bits are alike with a probability of 1e-16.
+  const std::string one = made("one", {}), two = made("two", {});
+  const std::uint64_t seed = json::parse(one).at("seed"), other = json::parse(two).at("seed");
+  CHECK(seed != other);
+  CHECK(seed < std::uint64_t{1} << 53);
+  CHECK(one != two);
+  CHECK(made("again", {"--seed", std::to_string(seed)}) == one);
+  CHECK(base::read_file(temp / "again/challenge.json") == base::read_file(temp / "one/challenge.json"));
+  CHECK(base::read_file(temp / "one/challenge.json").find(std::to_string(seed)) == std::string::npos);
 }
 
 TEST_CASE("challenge says which options belong to which action") {

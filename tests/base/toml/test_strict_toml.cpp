@@ -68,12 +68,14 @@ TEST_CASE("all errors of a file are reported together, in the order of lines") {
   file.root().number("b");
   file.root().number("c");
   file.root().table("d").integer("n", 1, 3);
+  file.root().table("d").integer("format", 1, 1);
   file.root().table("missing").number("x");
   const std::string message = message_of(file);
   CHECK(contains(message, "t.toml:1: a: found -1, expected a number above 0"));
   CHECK(contains(message, "t.toml:2: b: found text \"two\""));
   CHECK(contains(message, "t.toml:3: c: found nan"));
   CHECK(contains(message, "t.toml:4: d.n: found nothing, expected a whole number from 1 to 3"));
+  CHECK(contains(message, "t.toml:4: d.format: found nothing, expected 1\n"));
   CHECK(contains(message, "missing: found nothing, expected a table [missing]"));
   CHECK_FALSE(contains(message, "missing.x"));
   CHECK(message.find("b: found") < message.find("c: found"));

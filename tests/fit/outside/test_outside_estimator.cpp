@@ -98,6 +98,28 @@ TEST_CASE("each way in which an estimator's program fails is told apart, with wh
   }
 }
 
+TEST_CASE("a program that has a function called fails as the function does, and is shown by the function's name") {
+  const tests::TempDir temp;
+  write_experiment(temp / "folder");
+  const auto run = [&](const std::string& script) {
+    base::write_file(temp / "mine.sh", script);
+    fit::OutsideEstimator estimator =
+        fit::outside_estimator("sh '" + (temp / "mine.sh").string() + "' {folder} {out}", "mine");
+    estimator.function = "mine";
+    const fit::OutsideOutcome outcome = fit::run_outside(estimator, temp / "folder");
+    CHECK(fit::tally_of(estimator, {outcome.run}).command == "the function mine");
+    return outcome.run;
+  };
+  const fit::OutsideRun raised = run("echo 'ValueError: no line (mine.py, line 3)' >&2; exit 1");
+  CHECK(raised.failure == fit::OutsideFailure::raised);
+  CHECK(raised.what == "ValueError: no line (mine.py, line 3)");
+  CHECK(fit::why_begins(raised.failure) == "the estimator failed (raised)");
+  const fit::OutsideRun wrong = run("echo 'mu: found no standard deviation' >&2; exit 2");
+  CHECK(wrong.failure == fit::OutsideFailure::bad_output);
+  CHECK(wrong.what == "mu: found no standard deviation");
+  CHECK(run("kill -9 $$").failure == fit::OutsideFailure::signal);
+}
+
 TEST_CASE("all that is wrong with an estimator's results is told on one line, parted by semicolons") {
   const tests::TempDir temp;
   const fit::OutsideOutcome outcome =

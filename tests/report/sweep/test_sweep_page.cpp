@@ -259,3 +259,18 @@ TEST_CASE(
   of.failures.other_kinds = of.failures.other_runs = 1;
   CHECK(has(report::sweep_text(of), "  and 1 more kind (1 run)\n"));
 }
+
+TEST_CASE("a sweep whose own runs are done does not say that none failed where an estimator of the user's own did") {
+  validate::SweepSummary of = summary();
+  of.runs = of.planned = 6;
+  of.failed = 0;
+  CHECK(has(report::sweep_text(of), "6 of 6 runs, 0 failed\n"));
+  of.outside = fit::OutsideTally{"nan", "mine {folder} {out}", 6, {}, 0.0, 0.0};
+  of.outside->failures[0] = {6, "exit status 1: skipped: no pynumdiff"};
+  const std::string text = report::sweep_text(of);
+  CHECK_FALSE(has(text, "0 failed"));
+  CHECK(has(text,
+            "6 of 6 runs\nnan: 6 of 6 runs failed (6 ended with an exit status other than 0, the first: exit status "
+            "1: skipped: no pynumdiff)"));
+  CHECK(has(report::sweep_report(of).html, "not made or not analysed"));
+}

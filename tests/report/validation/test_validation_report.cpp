@@ -80,9 +80,11 @@ TEST_CASE("a comparison begins with an outside estimator's failure, and calls it
   comparison.quantities.push_back(quantity("m1", "mine", "mu", 0.0071, 0.0171, 0.0001));
   CHECK(report::comparison_text(comparison).find("the largest error: µ of m1 with “mine”, 100 standard deviations") !=
         std::string::npos);
-  comparison.outside = fit::tally_of("mine", "", {{fit::OutsideFailure::exit_status, "exit status 7", 1.0}});
+  comparison.outside =
+      fit::tally_of("mine", "", {{fit::OutsideFailure::exit_status, "exit status 7: skipped: no pynumdiff", 1.0}});
   CHECK(report::comparison_text(comparison)
-            .starts_with("“mine” failed in 1 of 1 run: 1 ended with an exit status other than 0. 3 of 5 recovered"));
+            .starts_with("“mine” failed in 1 of 1 run: 1 ended with an exit status other than 0, the first: exit "
+                         "status 7: skipped: no pynumdiff. 3 of 5 recovered"));
 }
 
 TEST_CASE("a quantity that these motions do not have has no row, and one that was not recovered keeps its row") {

@@ -194,7 +194,7 @@ std::uint64_t logs_for(double factor, double z, double sd) {
 std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, const BaselineComparison& comparison) {
   std::vector<Detectable> all;
   const double level = comparison.significance / static_cast<double>(comparison.tests);
-  const double found = z_above(1.0 - kDetectionProbability), small_found = z_above(1.0 - kSmallDetection);
+  const double found = z_above(1.0 - kDetectionProbability);
   const double one_sided = z_above(level), two_sided = z_above(0.5 * level), z = one_sided + found;
   for (const ErrorRecord& before : then.records) {
     const auto same_now = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
@@ -208,7 +208,7 @@ std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, co
     of.factor = factor_of(before.deviation, before.deviation_sd, z, n, m);
     of.bias = z * before.sd * std::sqrt(1.0 / n + 1.0 / m);
     of.runs_for_weak = answers_for(kWeakFactor, z, before);
-    of.runs_for_small = answers_for(kSmallFactor, one_sided + small_found, before);
+    of.runs_for_small = answers_for(kSmallFactor, z, before);
     all.push_back(std::move(of));
   }
   for (const SmoothingRecord& before : then.smoothing) {
@@ -219,7 +219,7 @@ std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, co
     const auto add = [&](const char* quantity, double sd, double z_level) {
       all.push_back({before.clip, core::name_of(core::LineMethod::ordinary), quantity,
                      std::exp((z_level + found) * sd * root), std::nullopt, logs_for(kWeakFactor, z_level + found, sd),
-                     logs_for(kSmallFactor, z_level + small_found, sd)});
+                     logs_for(kSmallFactor, z_level + found, sd)});
     };
     add("a", before.log_a_error_sd, one_sided);
     add("bandwidth", before.log_bandwidth_sd, two_sided);

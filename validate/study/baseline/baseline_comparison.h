@@ -50,11 +50,12 @@ struct BaselineComparison {
 /// of baseline.h.
 BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
 
-inline constexpr double kDetectionProbability = 0.9;
+/// With which a change is said to be detected.
+inline constexpr double kDetectionProbability = 0.95;
 /// A gate that detects only errors larger than this many times misses too much.
 inline constexpr double kWeakFactor = 1.5;
-/// What a gate should detect nearly always: errors this many times as large, with this probability.
-inline constexpr double kSmallFactor = 1.1, kSmallDetection = 0.95;
+/// What a good gate detects: errors this many times as large.
+inline constexpr double kSmallFactor = 1.1;
 
 /// The smallest worsening of one quantity that a comparison with a baseline detects.
 struct Detectable {
@@ -63,7 +64,7 @@ struct Detectable {
   std::optional<double> factor;      ///< errors this many times as large; empty if these runs detect no factor at all
   std::optional<double> bias;        ///< in the quantity's unit; empty for smoothing
   std::uint64_t runs_for_weak = 0;   ///< number of runs, then and now, needed to detect a factor of kWeakFactor
-  std::uint64_t runs_for_small = 0;  ///< the same for kSmallFactor, with probability kSmallDetection
+  std::uint64_t runs_for_small = 0;  ///< the same for kSmallFactor
   bool weak() const { return !factor || *factor > kWeakFactor; }
 };
 

@@ -47,7 +47,7 @@ SweepEntries entries_of(const Sweep& sweep, const std::string& version) {
   }
   if (sweep.outside) {
     entries.emplace_back(kEstimatorEntry, sweep.outside->name);
-    entries.emplace_back("estimator's command", fmt::format("{}", fmt::join(sweep.outside->words, " ")));
+    entries.emplace_back("estimator's command", fit::command_text(*sweep.outside));
   }
   return entries;
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "test_paths.h"
@@ -247,6 +248,9 @@ TEST_CASE("a motion that is too short for any bandwidth gets none, and unknown n
   problem.step_s = 0.1;
   for (const BandwidthRule& rule : bandwidth_rules()) CHECK_FALSE(rule.choose(problem));
   CHECK_FALSE(find_bandwidth_rule("silverman"));
+  CHECK_THROWS_WITH(check_bandwidth({}, "best"),
+                    "bandwidth: found \"best\", expected one of lines, cv, gcv, "
+                    "cv-correlated, rsc, plug-in, ebbs, ici");
 }
 
 TEST_CASE("a rule that judges x says which bandwidth it found for x, of which its own is the conversion") {
@@ -302,4 +306,22 @@ TEST_CASE("every rule states what it does and assumes, is found by its name, and
     CHECK(told.find("| " + std::string(rule.assumes) + " |") != std::string::npos);
   }
   CHECK(guide.find("\n| `" + std::string(kLinesRule) + "`") != std::string::npos);
+}
+
+TEST_CASE("what the stop check throws ends a rule that tries one bandwidth after the other") {
+  const Case of = sliding(1e-4, 200.0);
+  const std::vector<double> x = noisy(of, 3);
+  for (const char* name : {"cv", "gcv", "cv-correlated", "rsc", "ebbs", "ici"}) {
+    INFO(name);
+    BandwidthProblem problem = problem_of(of, x);
+    std::size_t checks = 0;
+    problem.stop_check = [&] { ++checks; };
+    REQUIRE(find_bandwidth_rule(name)->choose(problem));
+    const BandwidthScan scan(problem);
+    CHECK(checks >= scan.grid().size());
+    problem.stop_check = [&] {
+      if (--checks == 0) throw glidelab::base::Interrupted();
+    };
+    CHECK_THROWS_AS(find_bandwidth_rule(name)->choose(problem), glidelab::base::Interrupted);
+  }
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/errors.h"
 #include "tests/catch.h"
 
 using namespace glidelab::core;
@@ -283,4 +284,28 @@ TEST_CASE("covariances of x, v and a, at one point and between points, are W Sig
   const auto row = *smoother.row_of_point(20);
   CHECK(point_covariance(row, row, {{3.0}, {}})(2, 2) ==
         Approx(noise_variance(row.weights->a, std::vector<double>{3.0})).epsilon(1e-12));
+}
+
+TEST_CASE("what the stop check throws ends the smoothing of even and uneven times") {
+  std::vector<double> even(20000);
+  for (std::size_t i = 0; i < even.size(); ++i) even[i] = 0.01 * double(i);
+  // Uneven times: a check for each point; even ones: for every 4096 of the filter, and for every eight of the ends.
+  for (const auto& [t, least] : {std::pair{irregular_times(400), std::size_t{400}}, std::pair{even, std::size_t{6}}}) {
+    const LocalPolynomial smoother(t, options(3, Kernel::gaussian, 0.05));
+    const auto whole = smoother.smooth(t);
+    std::size_t checks = 0;
+    const auto checked = smoother.smooth(t, [&] { ++checks; });
+    CHECK(checks >= least);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      REQUIRE(whole[i].has_value() == checked[i].has_value());
+      if (whole[i] && whole[i]->x_m != checked[i]->x_m) FAIL("the check changes the values");
+    }
+    std::size_t left = checks;
+    CHECK_THROWS_AS(smoother.smooth(t,
+                                    [&] {
+                                      if (--left == 0) throw glidelab::base::Interrupted();
+                                    }),
+                    glidelab::base::Interrupted);
+    CHECK(left == 0);
+  }
 }

@@ -227,3 +227,50 @@ TEST_CASE("bands of a hold nearly 95 % of signals of the prior, at single times 
   CHECK(double(whole) / kSignals > 0.95 - 0.03 - 3.0 * 0.011);
   CHECK(double(whole) / kSignals < 0.99);
 }
+
+TEST_CASE("what the stop check throws ends the search, the standard deviations and the simultaneous band") {
+  SmoothingInput input = turning(1e-5);
+  input.simultaneous = true;
+  for (const Smoother* smoother : kOwnStrength) {
+    CAPTURE(smoother->name());
+    std::size_t checks = 0;
+    input.stop_check = [&] { ++checks; };
+    const SmoothedSeries whole = smoother->smooth(input);
+    REQUIRE(whole.points.front());
+    // One for each pass over the positions, dozens in a search, and one for each position's standard deviation.
+    CHECK(checks > input.t_s.size() + 100);
+    for (const std::size_t last : {std::size_t{1}, checks / 2, checks - input.t_s.size(), checks}) {
+      std::size_t left = last;
+      input.stop_check = [&] {
+        if (--left == 0) throw glidelab::base::Interrupted();
+      };
+      CHECK_THROWS_AS(smoother->smooth(input), glidelab::base::Interrupted);
+      CHECK(left == 0);
+    }
+  }
+}
+
+// The smoothing time of 100,000 positions is known to a fraction of 1e-3, so that every process near the most likely
+// one has less than a thousandth of its likelihood times a step of log tau.
+TEST_CASE("a long motion whose smoothing time is known to a part in a thousand has a smoothed motion", "[slow]") {
+  SmoothingInput input;
+  input.t_s = even_times(100000, 0.01);
+  for (const double t : input.t_s) input.x_m.push_back(std::sin(t));
+  input.simultaneous = true;
+  for (const Smoother* smoother : kOwnStrength) {
+    CAPTURE(smoother->name());
+    const SmoothedSeries series = smoother->smooth(input);
+    REQUIRE(series.points.size() == input.t_s.size());
+    // Positions without noise are followed to rounding; a to the rounding of 1e-16 over a squared step of 1e-4 s^2, and
+    // some tens of that for the kernel's weights.
+    for (std::size_t i = 100; i + 100 < input.t_s.size(); i += 997) {
+      REQUIRE(series.points[i]);
+      CHECK(std::abs(series.points[i]->x_m - std::sin(input.t_s[i])) < 1e-9);
+      CHECK(std::abs(series.points[i]->a_m_s2 + std::sin(input.t_s[i])) < 1e-5);
+      CHECK(series.points[i]->sd_a_m_s2 > 0.0);
+      CHECK(std::isfinite(series.points[i]->sd_a_m_s2));
+    }
+    REQUIRE(series.strength.simultaneous_a);
+    CHECK(*series.strength.simultaneous_a > 3.0);  // many more than one independent a: more than the 1.96 of one
+  }
+}
