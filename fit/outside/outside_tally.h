@@ -9,10 +9,10 @@
 
 namespace glidelab::fit {
 
-enum class OutsideFailure { none, exit_status, raised, signal, time_out, no_output, bad_output };
-inline constexpr std::array kOutsideFailures = {OutsideFailure::exit_status, OutsideFailure::raised,
-                                                OutsideFailure::signal,      OutsideFailure::time_out,
-                                                OutsideFailure::no_output,   OutsideFailure::bad_output};
+enum class OutsideFailure { none, exit_status, signal, time_out, no_output, bad_output, raised };
+inline constexpr std::array kOutsideFailures = {OutsideFailure::exit_status, OutsideFailure::signal,
+                                                OutsideFailure::time_out,    OutsideFailure::no_output,
+                                                OutsideFailure::bad_output,  OutsideFailure::raised};
 
 /// In files: "exit_status".
 std::string_view key_of(OutsideFailure failure);
