@@ -174,6 +174,14 @@ std::string common_judge(const Requirement& requirement) {
   return common;
 }
 
+/// Whether the estimators that judge differ from camera to camera.
+bool judges_differ(const Requirement& requirement) {
+  return common_judge(requirement).empty() &&
+         std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
+           return std::ranges::any_of(candidate.results, [](const auto& result) { return !result.estimator.empty(); });
+         });
+}
+
 /// "All were judged with the fit of the whole motion."; empty if they differ or nothing was run.
 std::string judge_sentence(const Requirement& requirement) {
   const std::string common = common_judge(requirement);
@@ -182,7 +190,7 @@ std::string judge_sentence(const Requirement& requirement) {
 
 /// All of them, the cheapest first.
 std::string candidate_table(const Requirement& requirement) {
-  const bool judge_column = common_judge(requirement).empty();
+  const bool judge_column = judges_differ(requirement);
   std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
   if (judge_column) header.emplace_back("judged by");
   const std::size_t first_number = header.size();
@@ -320,7 +328,7 @@ Page requirement_report(const Requirement& requirement) {
 }
 
 std::string requirement_text(const Requirement& requirement) {
-  const bool judge_column = common_judge(requirement).empty();
+  const bool judge_column = judges_differ(requirement);
   std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict"}};
   if (judge_column) rows.front().emplace_back("judged by");
   for (const Target& target : requirement.targets) {
