@@ -51,9 +51,11 @@ void say_power(const CommonOptions& common, const validate::Baseline& then, cons
     ++weak;
     runs = std::max(runs, of.runs_for_weak);
   }
-  say(common, fmt::format("smallest worsening that is detected with probability {}; and how many runs, in the baseline "
-                          "and now, so detect errors {} times as large:\n{}",
-                          validate::kDetectionProbability, validate::kSmallFactor, report::text_table(rows, 3)));
+  say(common,
+      fmt::format(
+          "smallest worsening that is detected with probability {}, and the number of runs, in the baseline and now, "
+          "that detect errors {} times as large with the same probability:\n{}",
+          validate::kDetectionProbability, validate::kSmallFactor, report::text_table(rows, 3)));
   if (weak == 0) return;
   say(common,
       fmt::format("warning: a weak gate: for {} of {} quantities only errors more than {} times as large are "

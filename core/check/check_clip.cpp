@@ -181,7 +181,7 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.pixel_noise = look.pixel_noise;
   clip.block_steps = look.block_steps;
   clip.combs = look.combs;
-  clip.frames_alone = look.file.codec == "MJPG";
+  clip.frames_alone = look.file.lossy.value_or(false) && !look.file.predicts.value_or(true);
 }
 
 /// Empty for fewer than some twenty outlines (a centroid has none).

@@ -18,7 +18,7 @@ bool is_lit_from_one_side(const ClipCheck& clip);
 inline constexpr double kSaturatedLevel = 0.985;
 
 /// Whether the marker's size in the image differs by more than 15 % from what its diameter and the scale predict (by
-/// more than a half if it is no disc or saturated). One that its own smear makes larger does not, nor a smaller one
+/// a factor of 1.5 if it is no disc or saturated). One that its own smear makes larger does not, nor a smaller one
 /// that is lit from one side: the fit finds the lit part.
 bool size_disagrees(const ClipCheck& clip);
 

@@ -20,6 +20,7 @@ constexpr double kFineness = 4.0;               // frequencies a width of the pe
 constexpr double kFewestPeriods = 3.0;          // a series
 constexpr double kMedianGainsSubtracted = 4.0;  // of the gains at all frequencies: what noise may reach
 constexpr std::size_t kMostFrequencies = 6000;  // frequencies
+constexpr double kNearLimit = 0.4;              // of the sampling rate
 constexpr double kApart = 0.1;                  // of the determinant of a cosine and a sine that are independent
 
 /// A series minus its mean, slope and curvature, and the orthonormal terms that were removed.
@@ -76,8 +77,10 @@ class Flat {
     at.explained = std::clamp(at.explained, 0.0, squares_);
     // Near half the sampling rate the sine is all but zero in every sample, and a and b are large and cancel: a wave is
     // as large as what the samples show of it.
-    const bool apart = determinant > kApart * 0.25 * static_cast<double>(n * n);
-    at.squared = apart ? at.a * at.a + at.b * at.b : 2.0 * at.explained / static_cast<double>(n);
+    const bool apart = determinant > kApart * 0.25 * static_cast<double>(n * n) || f_hz < kNearLimit * rate();
+    const double seen =
+        0.5 * (cc + ss + std::hypot(cc - ss, 2.0 * cs));  // by the samples, of the phase that shows most
+    at.squared = apart ? at.a * at.a + at.b * at.b : at.explained / seen;
     at.variance = 2.0 * (squares_ - at.explained) / static_cast<double>(n * n);
     return at;
   }

@@ -1,5 +1,7 @@
 #include "core/result/uphill.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/result/estimate.h"
@@ -9,11 +11,12 @@ namespace glidelab::core {
 
 bool seems_uphill(const InclineContradiction& contradiction) {
   if (!contradiction.gross || contradiction.beyond_gravity) return false;
-  if (contradiction.bound != 0) {  // the other sign lies beyond the bound
-    constexpr double kCareless_deg = 1.25;
+  if (contradiction.bound != 0) {                                 // the other sign lies beyond the bound
+    constexpr double kCareless_deg = 1.0, kCarelessShare = 0.25;  // as incline_contradiction() calls gross
     const double turned_deg = -contradiction.stated.deg;
+    const double careless_deg = std::max(kCareless_deg, kCarelessShare * std::abs(turned_deg));
     return turned_deg * contradiction.deg > 0.0 &&
-           contradiction.bound * (turned_deg - contradiction.deg) > -kCareless_deg;
+           contradiction.bound * (turned_deg - contradiction.deg) > -careless_deg;
   }
   ConfigurationResult found;
   found.alpha_deg =

@@ -20,6 +20,16 @@ struct TableColumn {
   std::vector<base::Issue> texts = {};        ///< fields between the numbers that hold text, the first ten
 };
 
+/// A table of numbers (column_table.h).
+struct ColumnTable {
+  std::string file;
+  bool has_header = false;
+  std::vector<TableColumn> columns;  ///< two or more
+  std::vector<int> line;             ///< of each data line, 1-based
+  std::string sheet = {};            ///< of a workbook with several
+  std::size_t dates = 0;             ///< cells of a workbook left empty because they show a date or a time of day
+};
+
 /// Units of length and time as tables state them: symbols, and words in English, German, French, Spanish, Portuguese
 /// and Italian.
 ///

@@ -15,8 +15,8 @@
 #include "base/files/file_io.h"
 #include "base/text/readable_text.h"
 #include "base/text/trimmed.h"
-#include "core/track/clock_time.h"
 #include "core/track/number_field.h"
+#include "core/track/stacked_runs.h"
 #include "core/track/text_encoding.h"
 #include "core/track/workbook.h"
 
@@ -24,7 +24,6 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kMostFieldIssues = 10;
-constexpr std::size_t kMostFields = 100'000'000;  // 1.6 GB; a file of 1 GiB holds about 60 million of t and x
 
 /// Of a line: tabs may separate its columns.
 std::string_view trimmed_line(std::string_view text) {
@@ -292,10 +291,28 @@ base::Issue other_sign(const std::string& file, const Line& line, const Format& 
           fmt::format("a decimal {} throughout", format.decimal == ',' ? "comma" : "point")};
 }
 
-/// Times of day become seconds from the first of them, where no other column holds times; elsewhere, they and dates are
-/// no values, as other text.
-void count_times_of_day(ColumnTable& table, const std::vector<bool>& of_clock) {
-  bool others = false;
+/// Of each column: rows with a time of day, and with a plain number.
+struct ClockFields {
+  std::vector<std::size_t> rows;
+  std::size_t numbers = 0;
+};
+
+/// Times of day become seconds from the first of them, where all of a column are that and no other column holds times.
+/// Elsewhere they are no values, as other text. Whether they are the times of the table.
+bool count_times_of_day(ColumnTable& table, const std::vector<ClockFields>& fields) {
+  std::vector<bool> of_clock;
+  for (std::size_t c = 0; c < fields.size(); ++c) {
+    TableColumn& column = table.columns[c];
+    of_clock.push_back(!fields[c].rows.empty() && fields[c].numbers == 0);
+    if (of_clock.back()) continue;
+    for (const std::size_t row : fields[c].rows) {
+      column.values[row].reset();
+      if (column.texts.size() >= kMostFieldIssues) continue;
+      column.texts.push_back({table.file, table.line[row], fmt::format("column {}", c + 1), "a time of day",
+                              "a number, as in the other rows"});
+    }
+  }
+  bool others = false, any = false;
   for (std::size_t c = 0; c < of_clock.size(); ++c)
     others = others || (!of_clock[c] && is_time_column(table.columns[c]));
   for (std::size_t c = 0; c < of_clock.size(); ++c) {
@@ -303,11 +320,14 @@ void count_times_of_day(ColumnTable& table, const std::vector<bool>& of_clock) {
     if (!of_clock[c]) continue;
     if (others) {
       std::ranges::fill(column.values, std::nullopt);
+      column.unit = "time of day";  // no unit of times, whatever the name
     } else {
       count_from_first(column.values);
       column.unit = "s";
+      any = true;
     }
   }
+  return any;
 }
 
 /// A delimiter at the end of each line makes a column without a name and without values.
@@ -318,59 +338,6 @@ void drop_empty_columns_at_end(ColumnTable& table) {
                         [](const auto& value) { return value.has_value(); });
   };
   while (!table.columns.empty() && is_empty(table.columns.back())) table.columns.pop_back();
-}
-
-/// Rows of one run, [from, to), and its number in the table.
-struct StackedRun {
-  std::size_t from = 0, to = 0;
-  double number = 0.0;
-};
-
-/// The runs that this column numbers: whole numbers that each stay for rows on end and do not return, with times that
-/// rise within a run and begin anew in the next; none otherwise.
-std::vector<StackedRun> stacked_runs(const TableColumn& numbers, const TableColumn& times) {
-  std::vector<StackedRun> runs;
-  std::set<double> seen;
-  for (std::size_t row = 0; row < numbers.values.size(); ++row) {
-    const std::optional<double>&number = numbers.values[row], &time = times.values[row];
-    if (!number || !time || *number != std::round(*number)) return {};
-    const bool is_next = runs.empty() || *number != runs.back().number;
-    const bool falls = row > 0 && *time <= *times.values[row - 1];
-    if (is_next != (runs.empty() || falls) || (is_next && !seen.insert(*number).second)) return {};
-    if (is_next) runs.push_back({row, row, *number});
-    runs.back().to = row + 1;
-  }
-  return runs.size() < 2 ? std::vector<StackedRun>() : runs;
-}
-
-/// A table with its runs one below the other, as one with the runs side by side: each value stays in its row.
-void put_side_by_side(ColumnTable& table) {
-  const auto time = std::ranges::find_if(table.columns, is_time_column);
-  if (!table.has_header || time == table.columns.end()) return;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const TableColumn& numbers = table.columns[c];
-    if (&numbers == &*time || is_place_column(numbers) || is_height_column(numbers)) continue;
-    const std::vector<StackedRun> runs = stacked_runs(numbers, *time);
-    if (runs.empty()) continue;
-    if (runs.size() > kMostFields / (table.columns.size() * table.line.size())) return;
-    std::vector<TableColumn> columns;
-    for (const StackedRun& run : runs) {
-      for (std::size_t of = 0; of < table.columns.size(); ++of) {
-        if (of == c) continue;
-        TableColumn column = table.columns[of];
-        column.run = fmt::format("{} {}", numbers.name, run.number);
-        column.text = fmt::format("{} {}", column.text, column.run);
-        const int first = table.line[run.from], last = table.line[run.to - 1];
-        std::erase_if(column.texts, [&](const base::Issue& text) { return text.line < first || text.line > last; });
-        for (std::size_t row = 0; row < column.values.size(); ++row) {
-          if (row < run.from || row >= run.to) column.values[row].reset();
-        }
-        columns.push_back(std::move(column));
-      }
-    }
-    table.columns = std::move(columns);
-    return;
-  }
 }
 
 }  // namespace
@@ -461,7 +428,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
                       ambiguous ? "one for each name (a decimal comma needs another delimiter than the comma)"
                                 : "one for each name"});
   }
-  std::vector<bool> of_clock(width, false);
+  std::vector<ClockFields> clock(width);
   for (std::size_t r = first_data; r < rows.size(); ++r) {
     table.line.push_back(lines[r].number);
     for (std::size_t c = 0; c < width; ++c) {
@@ -469,10 +436,8 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
       std::optional<double> value;
       if (!is_missing(field)) {
         value = number_in(field, decimals[c], thousands_of(*format));
-        if (!value) {
-          value = clock_time_in(field);
-          of_clock[c] = of_clock[c] || value.has_value();
-        }
+        clock[c].numbers += value ? 1 : 0;
+        if (!value && (value = clock_time_in(field))) clock[c].rows.push_back(table.columns[c].values.size());
         std::vector<base::Issue>& texts = table.columns[c].texts;
         if (!value && texts.size() < kMostFieldIssues) {
           texts.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
@@ -483,9 +448,9 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
     }
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
-  count_times_of_day(table, of_clock);
+  const bool times_of_day = count_times_of_day(table, clock);
   drop_empty_columns_at_end(table);
-  put_side_by_side(table);
+  put_side_by_side(table, times_of_day);
   return table;
 }
 

@@ -10,15 +10,13 @@
 /// ("Run,Time,Position"), which become columns as of runs side by side, each value in its row; NaN for no value; the
 /// Unicode minus sign (U+2212); blanks between thousands. A decimal comma goes with a comma between fields if each
 /// number that has one is in quotes. The delimiter and the decimal sign are chosen so that most lines consist only of
-/// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value. Times of
-/// day ("14:03:07.25", also after a date) are seconds from the first row where no other column is named as one of
+/// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value. Times
+/// of day ("14:03:07.25", also after a date) are seconds from the first row where no other column is named as one of
 /// times, and no values elsewhere.
 /// Brackets around digits belong to the name: "cal[0]".
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,15 +24,6 @@
 #include "core/track/column_header.h"
 
 namespace glidelab::core {
-
-struct ColumnTable {
-  std::string file;
-  bool has_header = false;
-  std::vector<TableColumn> columns;  ///< two or more
-  std::vector<int> line;             ///< of each data line, 1-based
-  std::string sheet = {};            ///< of a workbook with several
-  std::size_t dates = 0;             ///< cells of a workbook left empty because they show a date or a time of day
-};
 
 /// `name` is the file, for messages. InputError as below.
 ColumnTable table_of_text(std::string_view text, const std::string& name);

@@ -44,8 +44,8 @@ double metres_of(const ColumnTable& table, const TableColumn& column, std::vecto
 double metres_per_second_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 
-/// The first row that repeats the value above it, of times that never fall and stay the same in most rows: rounded, or
-/// rows that stand twice. Empty for others.
+/// The first row that repeats the value above it, of values that never fall and rise somewhere: times that were
+/// rounded, or rows that stand twice. Empty for others.
 std::optional<std::size_t> first_repeated(const TableColumn& times);
 
 /// Whether at least half of the steps are positive. Otherwise these are not times at all, rather than times with an

@@ -33,9 +33,9 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
           {setups[c].file.string(), 0, fmt::format("clip \"{}\"", clip.name),
            "an interlaced film: the odd rows of a frame were seen half a frame earlier or later than the "
            "even ones",
-           fmt::format("a film with its fields separated (ffmpeg -vf bwdif) and frame_rate_hz = {:.6g}, or "
-                       "one without interlacing",
-                       2.0 * clip.frame_rate_hz)});
+           fmt::format(
+               "a frame of each field (ffmpeg -vf bwdif) and frame_rate_hz = {:.6g}, or a film without interlacing",
+               2.0 * clip.frame_rate_hz)});
     }
     for (const core::Finding& finding :
          core::motion_findings(core::look_at_motion(clip), setups[c], results.gravity_m_s2)) {

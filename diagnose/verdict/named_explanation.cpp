@@ -146,6 +146,12 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
   });
 }
 
+bool is_function_without_size(const TrackSet& set, const MotionFit& fit, std::size_t effect) {
+  const EffectInfo& info = effect_list()[effect];
+  return info.search == Search::spread && info.parameters.front().each == Each::experiment &&
+         !has_certain_size(set, fit, {effect});
+}
+
 namespace {
 
 /// Whether an explanation leaves about as little of the gap as another: what it lacks is no cause of the gap.

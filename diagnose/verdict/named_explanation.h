@@ -28,8 +28,12 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
 
 /// Whether the size of one of these effects of a fit is larger than its standard deviation, or whether the several
 /// sizes of one (at several places, of each configuration) are together farther from 0 than chance brings them in one
-/// of 20 cases. Sizes that clips do not have in common are not looked at and count as certain.
+/// of 100 cases. Sizes that clips do not have in common are not looked at and count as certain.
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects);
+
+/// Whether an effect is a function of the place, whose many sizes follow nearly any motion, and all of them may as well
+/// be 0.
+bool is_function_without_size(const TrackSet& set, const MotionFit& fit, std::size_t effect);
 
 /// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell
 /// from them have one in their place (a cable for a bumper that was barely touched). If none has, the explanation of

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -171,11 +170,7 @@ class VerdictWithCauses {
   bool settle_probabilities();
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
-  bool lacks_size(std::size_t effect) const;
-  /// Of an unknown cause, by the sizes of what is named.
-  double least_unknown() const {
-    return impossible_ || !empty_.empty() ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
-  }
+  double least_unknown() const;
   void name_by_stated();
   void doubt_by_share(bool in_images);
   void move_imperfections_to_none();
@@ -210,7 +205,7 @@ class VerdictWithCauses {
   CauseSequence sequence_;
   Sized sized_;                                // the causes that keep their name, beside their own remainder
   bool open_size_ = false;                     // a name whose effect may as well have no size at all is not confident
-  std::set<std::size_t> empty_;                // named functions of a place, which follow any motion, without a size
+  std::set<std::size_t> empty_;                // named functions of the place without a size
   std::optional<ImpossibleSizes> impossible_;  // the explanation with these sizes
   std::vector<std::string> traces_;
 };
@@ -294,15 +289,10 @@ void VerdictWithCauses::size_causes() {
                !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
   if (names_ && sequence_.is_gap && shows_in_gap(best_)) impossible_ = impossible_sizes(sized_.fit);
   if (!names_ || !shows_in_gap(best_)) return;
-  const std::vector<std::size_t>& named = sequence_.is_gap ? fit_of_gap().effects : best_.effects;
-  std::ranges::copy_if(named, std::inserter(empty_, empty_.end()), [this](std::size_t e) { return lacks_size(e); });
-}
-
-/// Whether it is a function of the place, whose many sizes follow nearly any motion, and all of them may as well be 0.
-bool VerdictWithCauses::lacks_size(std::size_t effect) const {
-  if (effect_list()[effect].search != Search::spread || follows_each_clip(effect)) return false;
-  return sequence_.is_gap ? !has_certain_size(sized_.set, sized_.fit, {effect})
-                          : !has_certain_size(set_, fit_of(best_), {effect});
+  const bool gap = sequence_.is_gap;
+  for (const std::size_t e : gap ? fit_of_gap().effects : best_.effects) {
+    if (is_function_without_size(gap ? sized_.set : set_, gap ? sized_.fit : fit_of(best_), e)) empty_.insert(e);
+  }
 }
 
 /// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
@@ -336,6 +326,11 @@ bool VerdictWithCauses::viscous_leaves_less() const {
       .viscous_leaves_less();
 }
 
+/// The probability of an unknown cause, by the sizes of what is named.
+double VerdictWithCauses::least_unknown() const {
+  return impossible_ || !empty_.empty() ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
+}
+
 /// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
 bool VerdictWithCauses::settle_probabilities() {
   if (!is_settled()) return false;
@@ -345,9 +340,7 @@ bool VerdictWithCauses::settle_probabilities() {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   set_unknown(std::max(comparison.unknown, least_unknown()), comparison);
-  if (by_air_ && viscous_leaves_less()) {
-    set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
-  }
+  if (by_air_ && viscous_leaves_less()) set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   return verdict_by(comparison.none, comparison.unknown) == Verdict::effect;
 }
 
@@ -423,10 +416,8 @@ void VerdictWithCauses::move_imperfections_to_none() {
   std::vector<std::size_t> seen = found_->effects;  // by the noise alone
   if (!scatter) std::erase_if(seen, [&](std::size_t e) { return first_.effect_probability[e] < kLikelierThanNot; });
   if (names_ && shows_in_gap(best_)) allow_for_remainders(set_, without_, jobs_, first_);
-  const auto is_empty = [this](const Hypothesis& one) {
-    return std::ranges::any_of(one.effects, [this](std::size_t e) { return empty_.contains(e); });
-  };
-  if (!empty_.empty()) move_to_none(is_empty, first_);
+  const auto is_empty = [this](std::size_t e) { return empty_.contains(e); };
+  move_to_none([&](const Hypothesis& one) { return std::ranges::any_of(one.effects, is_empty); }, first_);
   if (scatter && probability_of_scatter(first_) < kSureScatter) move_to_none(is_scatter_alone, first_);
   if ((scatter || shows_in_gap(best_)) && verdict_by(first_.none, first_.unknown) == Verdict::none) {
     for (const std::size_t e : seen) traces_.emplace_back(effect_list()[e].id);

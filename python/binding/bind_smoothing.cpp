@@ -104,10 +104,10 @@ auto watched(const Work& work) {
   return watch.run([&](const base::Progress&) { return work([&] { watch.throw_if_stopped(); }); });
 }
 
-/// The same for the local polynomial, whose work for few points is over before a person or a thread has started.
+/// The same for the local polynomial, whose work for few points takes less time than a person needs to press Ctrl-C.
 template <typename Work>
 void watched(std::size_t points, const Work& work) {
-  constexpr std::size_t kFew = 4000;  // at most 1.6e7 weights: a tenth of a second or two
+  constexpr std::size_t kFew = 4000;  // at most 1.6e7 weights, 0.2 s
   if (points > kFew) return watched(work);
   const py::gil_scoped_release without_lock;
   work(base::never_stop);

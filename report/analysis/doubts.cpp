@@ -132,7 +132,7 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
         results.clips, [](const core::ClipResult& clip) { return clip.speed_noise_m_s.has_value(); });
     doubts.push_back(fmt::format(
         "The law (drag proportional to the speed, dry friction, gravity) does not fit these clips as they are. {}",
-        of_speeds ? "What is missing shows in positions: glidelab diagnose takes no speeds alone."
+        of_speeds ? "glidelab diagnose needs positions: speeds alone do not show what is missing."
                   : "Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
                     "from the law?)."));
   }

@@ -30,7 +30,7 @@ std::string instant_text(double t_s) {
   std::string text = fmt::format("{:.3f}", t_s);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.ends_with('.')) text.pop_back();
-  return text;
+  return text == "-0" ? "0" : text;
 }
 
 /// At most six names, and how many more there are.
@@ -223,8 +223,8 @@ struct FindingSentence {
     return {
         "the film is interlaced: in each frame the odd rows were seen half a frame earlier or later than the even "
         "ones, and what moves has edges like combs",
-        fmt::format("separate the fields (ffmpeg -vf bwdif, or separatefields) and state frame_rate_hz = {:.6g}, or "
-                    "film without interlacing",
+        fmt::format("make one frame of each field (ffmpeg -vf bwdif) and state frame_rate_hz = {:.6g}, or film without "
+                    "interlacing",
                     2.0 * of.frame_rate_hz)};
   }
   FindingWords operator()(const found::OtherRateInFile& of) const {

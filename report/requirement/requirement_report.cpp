@@ -288,15 +288,17 @@ std::string how_judged(const Requirement& requirement) {
              validate::kRunsForQuantile, validate::kResamples);
 }
 
-constexpr std::size_t kNameWidth = 31, kCostWidth = 13;  // characters, so that the table fits a terminal
+constexpr std::size_t kNameWidth = 31, kCostWidth = 12;  // bytes before "…", so that the table fits a terminal
 
-/// Its beginning, up to a comma, or else a blank, where it is longer.
+/// Its beginning and "…", where it is longer: up to the last comma before a blank in its second half, or else the last
+/// blank.
 std::string cut_short(const std::string& text, std::size_t width) {
   if (text.size() <= width) return text;
-  const std::string_view first = std::string_view(text).substr(0, base::first_bytes(text, width + 1).size());
-  const std::size_t comma = first.rfind(','), blank = first.rfind(' ');
-  const std::size_t end = comma != std::string_view::npos ? comma : blank;
-  return std::string(first.substr(0, end == std::string_view::npos ? width : end));
+  const std::string first = base::first_bytes(text, width);
+  const std::size_t comma = first.rfind(", "), blank = first.rfind(' ');
+  const bool by_comma = comma != std::string::npos && comma >= width / 2;
+  const std::size_t end = by_comma ? comma : blank;
+  return first.substr(0, end) + "…";  // npos: all of it
 }
 
 /// As many characters of each name as a terminal has room for; whole names where two would then be the same.

@@ -25,8 +25,8 @@ constexpr double kRowsOfParameter = 10.0;  // for each effective parameter of th
 constexpr int kLeastOrder = 3, kOrders = 3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostOrderDeficit = 20.0;  // of -2 log: orders that are less probable by a factor e^-10 are left out
-constexpr double kLeastWeight = 1e-3;       // of a member, over the likelihood of the most probable one; but
-constexpr double kLeastShare = 0.1;         // of the heaviest member, where the steps of log tau make all of them light
+constexpr double kLeastWeight = 1e-3;       // of a member, over the likelihood of the most probable one
+constexpr double kLeastShare = 0.1;         // of the heaviest member: where the steps of log tau make all of them light
 constexpr double kBreakSettled = 1e-4;      // of a step
 constexpr int kBreakPasses = 6, kBreakSearches = 3;
 constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): a value of 1 occasionally follows

@@ -109,8 +109,8 @@ TEST_CASE("a gate of few runs says how little it finds, and takes no other noise
   CHECK(other.err.find("--noise-m: found 2e-05, expected 3e-05, as for the baseline") != std::string::npos);
   const tests::ProcessResult same = validate({"--baseline", file, "--noise-m", "3e-5"});
   INFO(same.err);
-  CHECK(same.err.find("smallest worsening that is detected with probability 0.95; and how "
-                      "many runs, in the baseline and now, so detect errors 1.1 times as large") != std::string::npos);
+  CHECK(same.err.find("smallest worsening that is detected with probability 0.95, and the number of runs, in the "
+                      "baseline and now, that detect errors 1.1 times as large") != std::string::npos);
   // Of normal errors 10 runs find no factor at all: 4.7 (the level's z and that of 0.9) times 0.603 / sqrt(10) is more
   // than 0.798, the mean of |z|.
   CHECK(same.err.find("not detected") != std::string::npos);

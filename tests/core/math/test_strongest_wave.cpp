@@ -54,7 +54,6 @@ TEST_CASE("near half the sampling rate a wave is as large as the samples show it
   }
   const core::SeriesWave wave = core::strongest_wave(all);
   CHECK(wave.f_hz > 29.5);
-  CHECK(wave.amplitude < 2.0 * 4e-4);
-  CHECK(wave.amplitude > 4e-4);
-  CHECK(core::amplitude_at(all[0], 29.9997).size < 2.0 * 4e-4);
+  CHECK(std::abs(wave.amplitude - 4e-4) < 0.3 * 4e-4);
+  CHECK(std::abs(core::amplitude_at(all[0], 29.9997).size - 4e-4) < 0.3 * 4e-4);
 }

@@ -73,7 +73,7 @@ TEST_CASE("of speeds alone the next step is no command that takes none") {
   CHECK(any_has(report::doubts_about(results), "glidelab check"));
   results.clips[0].speed_noise_m_s = 0.01;
   CHECK_FALSE(any_has(report::doubts_about(results), "glidelab check"));
-  CHECK(any_has(report::doubts_about(results), "takes no speeds alone"));
+  CHECK(any_has(report::doubts_about(results), "needs positions"));
 }
 
 TEST_CASE("a clip that swings is doubted before anything else") {

@@ -1,10 +1,11 @@
-#include "core/track/clock_time.h"
+#include "core/track/number_field.h"
 
 #include <fmt/format.h>
 
 #include <string>
 
 #include "base/files/file_io.h"
+#include "core/track/column_table.h"
 #include "core/track/track_data.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
@@ -76,5 +77,48 @@ TEST_CASE("times of day are the times of a table that has no others, across midn
 TEST_CASE("times of day beside a column of seconds are not used, whichever stands nearer to x") {
   const auto seconds = [](double t) { return fmt::format("{:.3f}", t); };
   check_motion(read_rows("Clock,t (s),x (m)\n", [&](double t) { return "12:00:0" + seconds(t) + "," + seconds(t); }));
+  check_motion(
+      read_rows("Elapsed time (s),Time,x (m)\n", [&](double t) { return seconds(t) + ",12:00:0" + seconds(t); }));
   check_motion(read_rows("t (s),Date Time,x (m)\n", [&](double t) { return seconds(t) + ",2024-03-05 12:00:00"; }));
+}
+
+TEST_CASE("one time of day among numbers is refused with its line, as other text is") {
+  for (const bool in_x : {true, false}) {
+    CAPTURE(in_x);
+    std::string text = "t (s),x (m)\n";
+    for (int i = 0; i < kRows; ++i) {
+      const std::string odd = "1:00.5", t = fmt::format("{:.3f}", i / 40.0), x = fmt::format("{:.3f}", 0.01 * i * i);
+      text += fmt::format("{},{}\n", i == 7 && !in_x ? odd : t, i == 7 && in_x ? odd : x);
+    }
+    const tests::TempDir temp;
+    base::write_file(temp / "table.csv", text);
+    CHECK_THROWS_WITH(core::read_track_csv(temp / "table.csv", 1, {}),
+                      Catch::Matchers::Contains(":9:") && Catch::Matchers::Contains("a time of day"));
+  }
+}
+
+TEST_CASE("runs one below the other whose times of day go on are told apart by the column that numbers them") {
+  std::string text = "Run,Time,x (m)\n";
+  for (int i = 0; i < 2 * kRows; ++i) {
+    const int of_run = i % kRows;
+    const double t = i * 0.025 + (i < kRows ? 0.0 : 20.0);
+    text += fmt::format("{},12:00:{:06.3f},{:.5f}\n", i < kRows ? 1 : 2, t, 0.02 * of_run);
+  }
+  const core::ColumnTable table = core::table_of_text(text, "table.csv");
+  REQUIRE(table.columns.size() == 4);
+  CHECK(table.columns[0].run == "Run 1");
+  CHECK(table.columns[3].run == "Run 2");
+  CHECK(*table.columns[2].values[kRows] == Approx(21.0));
+  CHECK_FALSE(table.columns[1].values[kRows]);
+}
+
+TEST_CASE("times of day count from the first, over gaps and over midnight twice") {
+  std::vector<std::optional<double>> times = {86000.0, {}, 200.0, 80000.0, 100.0, 99.0};
+  core::count_from_first(times);
+  CHECK(*times[0] == 0.0);
+  CHECK_FALSE(times[1]);
+  CHECK(*times[2] == 600.0);
+  CHECK(*times[3] == 80400.0);
+  CHECK(*times[4] == 86900.0);
+  CHECK(*times[5] == 86899.0);  // a step back is none over midnight
 }
