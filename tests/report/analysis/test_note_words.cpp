@@ -39,7 +39,8 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::SlantedPath{12.34, 1.0236, false},
        "an angle of 12.3° with the x axis; positions are taken along the path, from x and y, and distances are 1.02 "
        "times those along x"},
-      {core::SlantedPath{12.34, 1.0236, false}, "this is the inclination (--incline 12.3, or -12.3 where x increases uphill)"},
+      {core::SlantedPath{12.34, 1.0236, false},
+       "this is the inclination (--incline 12.3, or -12.3 where x increases uphill)"},
       {core::SlantedPath{12.34, 1.0236, true}, "with the y axis"},
       {core::SlantedPath{12.34, 1.0236, true}, "(--incline 77.7, or -77.7 where x increases uphill)"},
       {core::CountedAlongMotion{}, "its sign is reversed"},
