@@ -65,7 +65,7 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   CHECK(has(mu, "19.8 ± 5.4"));
   const std::string page = report::requirement_report(one_camera("mu", 0.0005, 1.8e-5)).html;
   CHECK(has(page, ">3 of 200</td>"));
-  CHECK(has(page, ">27</td>"));    // 1.5 of the bound: at most
+  CHECK(has(page, ">27</td>"));       // 1.5 of the bound: at most
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
   CHECK(has(k, "rms error of K/m (10⁻³ 1/s)\n"));
