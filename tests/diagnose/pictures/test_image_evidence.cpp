@@ -417,7 +417,8 @@ TEST_CASE("light along the path is that on the brighter of a marker and what is 
     clip.record = record;
   }
   const diagnose::image::LightAlong light = light_of(diagnose::image_evidence(dark));
-  CHECK(std::abs(light.gradient_1_m + 0.6) < 1e-6);  // exact data; the normal equations have a ridge of 1e-9
+  // Exact data; the normal equations have a ridge of 1e-9, and place and speed are alike to a few parts in a thousand.
+  CHECK(std::abs(light.gradient_1_m + 0.6) < 1e-5);
 }
 
 TEST_CASE("a marker that is paler where it is faster, as a long exposure makes it, shows no light along the path",
