@@ -69,6 +69,8 @@ double price_of_spread(const MotionFit& fit, std::size_t effect) {
   Eigen::MatrixXd products = base::inverse_positive(
       Eigen::MatrixXd(unit.cwiseInverse().asDiagonal() * covariance(sizes, sizes) * unit.cwiseInverse().asDiagonal()));
   products.diagonal().array() -= 1.0;
+  // What these data cannot show at its usual size costs nothing, and rounding is all that is left of it.
+  if (!(products.diagonal().maxCoeff() >= kVisible_sd * kVisible_sd)) return 0.0;
   const SpreadEvidence evidence = log_spread_evidence(products, base::product(products, found));
   return std::min(0.0, evidence.log_evidence - evidence.free_gain);
 }

@@ -114,8 +114,8 @@ TEST_CASE("several sizes of one kind are certain if they are together farther fr
   const diagnose::SizeUncertainty uncertainty(named.set, fit);
   std::vector<Eigen::Index> globals;
   for (Eigen::Index g = 0; g < sizes; ++g) globals.push_back(first + g);
-  // Any direction, scaled so that v' C⁻¹ v is what is asked for; chi² of n degrees has its 95 % quantile below 2.4 n
-  // from n = 4 on, and above 1.5 n up to n = 15.
+  // Any direction, scaled so that v' C⁻¹ v is what is asked for; chi² of n degrees has its 99 % quantile below 3.4 n
+  // from n = 4 on, and above 2 n up to n = 15.
   const auto certain_at = [&](const Eigen::VectorXd& along, double chi2) {
     const Eigen::VectorXd scaled = along * std::sqrt(chi2 / uncertainty.chi2(globals, along));
     for (Eigen::Index g = 0; g < sizes; ++g) fit.at.global[first + g] = scaled[g];
@@ -125,9 +125,9 @@ TEST_CASE("several sizes of one kind are certain if they are together farther fr
   REQUIRE(n < 15.0);
   const Eigen::VectorXd all = Eigen::VectorXd::Ones(sizes), one = Eigen::VectorXd::Unit(sizes, 1);
   for (const Eigen::VectorXd& along : {all, one}) {
-    CHECK_FALSE(certain_at(along, 1.5 * n));
-    CHECK(certain_at(along, 2.4 * n));
-    CHECK(certain_at(-along, 2.4 * n));
+    CHECK_FALSE(certain_at(along, 2.0 * n));
+    CHECK(certain_at(along, 3.4 * n));
+    CHECK(certain_at(-along, 3.4 * n));
   }
   const std::size_t scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
   diagnose::MotionFit scattering = fit_with(diagnose::ids::clip_scatter);
