@@ -198,10 +198,11 @@ void note_loss(const ImageEvidence& images, TrackSet& set) {
   }
 }
 
-/// Falls that all begin far too slowly (core::slow_fall()) are driven by an unknown part of their weight, as in a
-/// liquid: by 0 to four times gravity, at a standard deviation of gravity itself. Whether that is so.
+/// Leaves open what part of its weight drives a body, from 0 to four times gravity at a standard deviation of gravity
+/// itself, where all falls begin far too slowly (core::slow_fall()) and none is too fast for a viscous drag, as in a
+/// liquid. Whether that is so.
 bool open_weight(const core::AnalysisResults& results, TrackSet& set) {
-  const bool slow = !results.configurations.empty() &&
+  const bool slow = !results.configurations.empty() && !set.through_air &&
                     std::ranges::all_of(results.configurations, [&](const core::ConfigurationResult& configuration) {
                       return core::slow_fall(configuration, results.gravity_m_s2).has_value();
                     });

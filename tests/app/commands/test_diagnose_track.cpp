@@ -12,6 +12,29 @@
 
 using namespace glidelab;
 
+TEST_CASE("diagnose: of a bead in a liquid that bears nearly all of its weight the force that drives it is fitted") {
+  // x'' = 0.15 m/s² - (2 1/s) x' from 0.02 m/s: v tends to 0.075 m/s. In air that would be K/m = 131 1/s.
+  const tests::TempDir temp;
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise_m(0.0, 2e-4);
+  std::string table = "t,x\n";
+  for (int i = 0; i < 60; ++i) {
+    const double t_s = i / 30.0;
+    table += fmt::format("{:.5f},{:.6f}\n", t_s, 0.075 * t_s + 0.0275 * (std::exp(-2.0 * t_s) - 1.0) + noise_m(random));
+  }
+  std::ofstream(temp / "bead.csv") << table;
+  const tests::ProcessResult done =
+      tests::glidelab({"diagnose", "bead.csv", "--incline", "90", "--json", "--quiet", "--no-page"}, temp.path());
+  INFO(done.err);
+  REQUIRE(done.status == 0);
+  const nlohmann::json diagnosis = nlohmann::json::parse(done.out);
+  CHECK(diagnosis["verdict"] != "effect");
+  const nlohmann::json& k = diagnosis["recovered"].front()["k_over_m_1_s"];
+  REQUIRE(k.is_object());
+  CHECK(std::abs(k["value"].get<double>() - 2.0) < 4.0 * k["sd"].get<double>());
+  CHECK(k["sd"].get<double>() < 1.0);
+}
+
 TEST_CASE("diagnose: what falls with a fifth of gravity has no drag of size 0 that explains its gap") {
   const tests::TempDir temp;
   std::mt19937 random(1);
