@@ -122,3 +122,13 @@ TEST_CASE("times of day count from the first, over gaps and over midnight twice"
   CHECK(*times[4] == 86900.0);
   CHECK(*times[5] == 86899.0);  // a step back is none over midnight
 }
+
+TEST_CASE("times that were rounded until most of them repeat are refused with the first row that does") {
+  std::string text = "t (s),x (m)\n";
+  for (int i = 0; i < kRows; ++i) text += fmt::format("{:.1f},{:.5f}\n", 0.1 * (i / 10), 0.01 * i);
+  const tests::TempDir temp;
+  base::write_file(temp / "table.csv", text);
+  CHECK_THROWS_WITH(
+      core::read_track_csv(temp / "table.csv", 1, {}),
+      Catch::Matchers::Contains(":3:") && Catch::Matchers::Contains("and most values repeat the one before"));
+}

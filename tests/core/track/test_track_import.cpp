@@ -403,13 +403,6 @@ TEST_CASE("a table without times says so once") {
   }
 }
 
-TEST_CASE("times that were rounded until most of them repeat are refused with the first row that does") {
-  std::string text = "t (s),x (m)\n";
-  for (int i = 0; i < 40; ++i) text += fmt::format("{:.1f},{:.5f}\n", std::floor(0.1 * i) * 0.1, 0.01 * i);
-  CHECK_THROWS_WITH(Made(text).read(), Contains(":3:") && Contains("0 again, and most values repeat the one before") &&
-                                           Contains("with more digits"));
-}
-
 TEST_CASE("times without a unit that would be 16.7 s apart are not taken as seconds") {
   std::string text = "frame,time,x\n";
   for (int i = 0; i < 10; ++i) text += fmt::format("{},{},0.{}\n", i, 600.0 + 16.683 * i, i);
