@@ -180,7 +180,6 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.marker_level = look.marker_level;
   clip.pixel_noise = look.pixel_noise;
   clip.block_steps = look.block_steps;
-  clip.combs = look.combs;
   clip.frames_alone = look.file.lossy.value_or(false) && !look.file.predicts.value_or(true);
 }
 
@@ -269,6 +268,7 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
   if (clip.contrast) clip.light = lighting_of(attempt.fits);
   clip.brightness = brightness_of(marker, attempt);
   clip.record = track.images;
+  if (track.images) clip.combs = track.images->combs;
   clip.centre_sd_px = median_of(sds);
   clip.marker_expected_px = experiment.marker->diameter_m * px_per_m;
   const CameraSettings& camera = *experiment.camera;

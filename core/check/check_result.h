@@ -116,7 +116,7 @@ struct ClipCheck {
   PathBrightness brightness;
   std::shared_ptr<const ImageRecord> record;  ///< of its scene
   double pixel_noise = 0.0;                   ///< of a pixel at rest from frame to frame; 0 if none is seen
-  double combs = 0.0;                         ///< CombWatch::share()
+  double combs = 0.0;                         ///< ImageRecord::combs
   bool frames_alone = false;                  ///< each is compressed without the others (MJPEG)
   double block_steps = 0.0;   ///< excess of the steps between pixels at the edges of a codec's 8 x 8 blocks
                               ///< over those elsewhere, relative; 0 if no block is beyond doubt

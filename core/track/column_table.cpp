@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <utility>
 

@@ -144,7 +144,7 @@ struct ImpossibleSizes {
 struct DoubtfulUnit {
   std::string clip;
   core::Found found;         ///< LongRun, SlowFrames, FallAboveGravity or FallsSlowly
-  bool weight_open = false;  ///< of FallsSlowly: what drives the fall is fitted (open_weight())
+  bool weight_open = false;  ///< what drives the falls, part of their weight, is fitted
 };
 
 /// A stated inclination that the motion contradicts.

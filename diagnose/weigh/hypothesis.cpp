@@ -10,6 +10,7 @@
 #include "base/math/dense.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/gap/held_out.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -52,9 +53,7 @@ std::map<std::size_t, double> probabilities_of_causes(const Comparison& comparis
 
 double price_of_spread(const MotionFit& fit, std::size_t effect) {
   if (effect_list()[effect].search != Search::spread || !fit.layout || !std::isfinite(fit.cost)) return 0.0;
-  CommonNormal all = statements_normal(fit);
-  for (const FitMotion& motion : fit.motions) all.add(project(motion));
-  const Eigen::MatrixXd covariance = inverse_normal(all.matrix);
+  const Eigen::MatrixXd covariance = common_covariance(fit);
   const auto& globals = fit.layout->globals();
   std::vector<Eigen::Index> sizes;
   std::vector<double> units;

@@ -118,7 +118,6 @@ void ClipWatch::add(const Frame& frame) {
   size_ = frame.grey.size();
   exposure_.add(frame);
   steps_.add(frame.grey);
-  combs_.add(frame.grey, frame.index);
   const bool second = !before_.empty();
   const bool first = (frame.index + 1) % every_ == 0;
   cv::Mat thin;
@@ -165,7 +164,6 @@ ClipLook ClipWatch::look(const MarkerSetup& marker, const std::vector<MarkerSigh
   const double full = look.exposure.full_code;
   look.pixel_noise = pixel_noise(sightings) / full;
   look.block_steps = sure_block_steps(steps_.finish());
-  look.combs = combs_.share();
   const SignalKind kind = signal_kind(marker);
   if (kind == SignalKind::colored || fits.empty()) return look;
   std::vector<double> contrast, level;

@@ -16,7 +16,6 @@
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/scene/camera_traces.h"
-#include "core/pictures/scene/interlacing.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -51,7 +50,6 @@ struct ClipLook {
   std::optional<double> marker_level;
   double pixel_noise = 0.0;  ///< of pixels away from the marker, from one frame to the next; 0 if none is seen
   double block_steps = 0.0;  ///< sure_block_steps() of a codec
-  double combs = 0.0;        ///< CombWatch::share()
 };
 
 /// Takes the frames of one clip and then reports. It keeps every fourth pixel, either way, of at most 24 pairs of
@@ -75,7 +73,6 @@ class ClipWatch {
 
   ExposureWatch exposure_;
   BlockStepSums steps_;
-  CombWatch combs_;
   FileFacts facts_;
   cv::Size size_;
   std::size_t every_ = 1;  ///< frames from one pair to the next

@@ -12,9 +12,23 @@
 
 using namespace glidelab;
 
+namespace {
+
+/// What `diagnose --json` says of a table of a fall.
+nlohmann::json diagnosed_fall(const std::string& table) {
+  const tests::TempDir temp;
+  std::ofstream(temp / "falling.csv") << table;
+  const tests::ProcessResult done =
+      tests::glidelab({"diagnose", "falling.csv", "--incline", "90", "--json", "--quiet", "--no-page"}, temp.path());
+  INFO(done.err);
+  REQUIRE(done.status == 0);
+  return nlohmann::json::parse(done.out);
+}
+
+}  // namespace
+
 TEST_CASE("diagnose: of a bead in a liquid that bears nearly all of its weight the force that drives it is fitted") {
   // x'' = 0.15 m/s² - (2 1/s) x' from 0.02 m/s: v tends to 0.075 m/s. In air that would be K/m = 131 1/s.
-  const tests::TempDir temp;
   std::mt19937 random(4);
   std::normal_distribution<double> noise_m(0.0, 2e-4);
   std::string table = "t,x\n";
@@ -22,12 +36,7 @@ TEST_CASE("diagnose: of a bead in a liquid that bears nearly all of its weight t
     const double t_s = i / 30.0;
     table += fmt::format("{:.5f},{:.6f}\n", t_s, 0.075 * t_s + 0.0275 * (std::exp(-2.0 * t_s) - 1.0) + noise_m(random));
   }
-  std::ofstream(temp / "bead.csv") << table;
-  const tests::ProcessResult done =
-      tests::glidelab({"diagnose", "bead.csv", "--incline", "90", "--json", "--quiet", "--no-page"}, temp.path());
-  INFO(done.err);
-  REQUIRE(done.status == 0);
-  const nlohmann::json diagnosis = nlohmann::json::parse(done.out);
+  const nlohmann::json diagnosis = diagnosed_fall(table);
   CHECK(diagnosis["verdict"] != "effect");
   const nlohmann::json& k = diagnosis["recovered"].front()["k_over_m_1_s"];
   REQUIRE(k.is_object());
@@ -36,7 +45,6 @@ TEST_CASE("diagnose: of a bead in a liquid that bears nearly all of its weight t
 }
 
 TEST_CASE("diagnose: what falls with a fifth of gravity has no drag of size 0 that explains its gap") {
-  const tests::TempDir temp;
   std::mt19937 random(1);
   std::normal_distribution<double> noise_m(0.0, 0.015);
   for (int run = 0; run < 4; ++run) {
@@ -46,12 +54,7 @@ TEST_CASE("diagnose: what falls with a fifth of gravity has no drag of size 0 th
       const double t_s = 0.1 * i;
       table += fmt::format("{:.1f},{:.9f}\n", t_s, 0.05 + 0.02 * t_s + 0.5 * 2.005 * t_s * t_s + noise_m(random));
     }
-    std::ofstream(temp / "falling.csv") << table;
-    const tests::ProcessResult done =
-        tests::glidelab({"diagnose", "falling.csv", "--incline", "90", "--json", "--quiet", "--no-page"}, temp.path());
-    INFO(done.err);
-    REQUIRE(done.status == 0);
-    const nlohmann::json diagnosis = nlohmann::json::parse(done.out);
+    const nlohmann::json diagnosis = diagnosed_fall(table);
     REQUIRE(diagnosis["verdict"] == "effect");
     REQUIRE_FALSE(diagnosis["effects"].empty());
     for (const nlohmann::json& effect : diagnosis["effects"]) {
