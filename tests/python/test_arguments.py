@@ -47,7 +47,7 @@ class WrongInput(InFolder):
     def test_choices(self):
         t, x = damped()
         self.refused(lambda: glidelab.analyze(t, x, bandwidth=-0.1), key="bandwidth", found="-0.1")
-        self.refused(lambda: glidelab.analyze(t, x, bandwidth="best"), key="bandwidth", found="best")
+        self.refused(lambda: glidelab.analyze(t, x, bandwidth="best"), key="bandwidth", found='"best"')
         self.refused(lambda: glidelab.analyze(t, x, estimator="best"), key="estimator")
         self.refused(lambda: glidelab.analyze(t, x, robust=True), key="robust")
         self.refused(lambda: glidelab.analyze(t, x, gravity_m_s2=0.0), key="gravity_m_s2")

@@ -201,7 +201,6 @@ AtTau with_jump(const PartedMotion<N>& motion, AtTau near) {
 template <int N>
 std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
   constexpr double kMostSpreadDeficit = 10.0;  // of -2 log: a weight of 0.7 %
-  constexpr double kStep = 0.8;                // standard deviations of log tau
   const double from = std::log(least_tau(motion.parts())), to = std::log(greatest_tau(motion.parts()));
   const double middle = std::log(best.how.tau_s), widest = std::log(kTauRatio);
   // The standard deviation of log tau on the side where -2 log rises faster.
@@ -212,7 +211,7 @@ std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
     rise = std::max(rise, here.minus_two_log - best.minus_two_log);
   }
   const double sd = rise > 0.0 ? kTrialStep / std::sqrt(rise) : widest;
-  const double step = std::min(kStep * sd, widest);
+  const double step = std::min(kStepOfSpread * sd, widest);
   std::vector<AtTau> made{best};
   for (const double sign : {-1.0, 1.0}) {
     AtTau last = best;

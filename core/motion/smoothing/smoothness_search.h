@@ -39,6 +39,9 @@ AtTau refined(const PartedMotion<N>& motion, const AtTau& near);
 template <int N>
 AtTau with_jump(const PartedMotion<N>& motion, AtTau near);
 
+/// The step of spread(), in standard deviations of log tau.
+inline constexpr double kStepOfSpread = 0.8;
+
 /// Points of a sum over tau, from the most probable one to both sides as far as they contribute; their weights follow
 /// from `minus_two_log`.
 template <int N>

@@ -263,8 +263,12 @@ class WienerSmoother final : public Smoother {
       });
       for (const AtTau& at : candidates.back().all) heaviest = std::max(heaviest, weight_of(at, best));
     }
-    // The more positions, the narrower log tau and its steps, and the lighter every single member.
-    const double least_weight = std::min(kLeastWeight, kLeastShare * heaviest);
+    // The more positions, the narrower log tau and its steps, and the lighter every single member. n positions tell a
+    // variance to sqrt(2/n), and log tau to that over twice the order: members lighter still are no process, as beyond
+    // a gap of many times the smoothing time, where the numbers break down.
+    const double narrowest = kStepOfSpread * std::sqrt(2.0 / static_cast<double>(parts.input.t_s.size())) /
+                             (2.0 * (kLeastOrder + kOrders - 1));
+    const double least_weight = heaviest < narrowest ? kLeastWeight : std::min(kLeastWeight, kLeastShare * heaviest);
     Choice most;
     double most_weight = -1.0;
     for (const Candidates& of_order : candidates) {
