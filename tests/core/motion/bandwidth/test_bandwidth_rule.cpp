@@ -248,9 +248,9 @@ TEST_CASE("a motion that is too short for any bandwidth gets none, and unknown n
   problem.step_s = 0.1;
   for (const BandwidthRule& rule : bandwidth_rules()) CHECK_FALSE(rule.choose(problem));
   CHECK_FALSE(find_bandwidth_rule("silverman"));
-  CHECK_THROWS_WITH(check_bandwidth({}, "best"),
-                    "bandwidth: found \"best\", expected one of lines, cv, gcv, "
-                    "cv-correlated, rsc, plug-in, ebbs, ici");
+  CHECK_THROWS_WITH(
+      check_bandwidth({}, "best"),
+      Catch::Matchers::StartsWith("bandwidth: found \"best\", expected one of lines, cv, gcv, cv-correlated, "));
 }
 
 TEST_CASE("a rule that judges x says which bandwidth it found for x, of which its own is the conversion") {
