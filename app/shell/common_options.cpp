@@ -314,6 +314,16 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->check(check_above_0)
       ->excludes(mass);
   command
+      .add_option("--frame-rate", options.frame_rate_hz,
+                  "For a file that counts frames in place of times: frames a second")
+      ->type_name("HZ")
+      ->check(check_above_0);
+  command
+      .add_option("--px-per-m", options.px_per_m,
+                  "For a file of positions in pixels, as DeepLabCut, SLEAP or a script write them: pixels in a metre")
+      ->type_name("NUMBER")
+      ->check(check_above_0);
+  command
       .add_option_function<std::string>(
           "--recorded-by", [&options](const std::string& by) { options.recorded_by = core::recorder_named(by); },
           "For a file: what measured the positions; default: as the table's header says, if it does. A sensor's "
@@ -327,16 +337,19 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
   const bool states = options.mass_kg || options.incline_deg || options.gravity_m_s2;
   const bool has_masses = !options.masses_kg.empty() || !options.mass_of_file.empty();
   const bool has_recorder = options.recorded_by != core::RecordedBy::unstated;
-  if (options.column.empty() && !states && options.runs.empty() && !has_masses && !has_recorder) return;
+  const bool of_images = options.frame_rate_hz || options.px_per_m;
+  if (options.column.empty() && !states && options.runs.empty() && !has_masses && !has_recorder && !of_images) return;
   for (const std::string& input : inputs) {
     std::error_code unreadable;
     const bool readable = std::filesystem::exists(input, unreadable);
     if (!readable || core::is_bare_track(input)) continue;  // the reader says that there is no such file
     throw base::InputError(base::Issue{
-        input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses, --recorded-by",
+        input, 0,
+        "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses, --frame-rate, "
+        "--px-per-m, --recorded-by",
         "not a file with a track",
-        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg, gravity_m_s2 and "
-        "recorded_by"});
+        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg, gravity_m_s2, [camera] "
+        "frame_rate_hz, [scale] px_per_m and recorded_by"});
   }
 }
 

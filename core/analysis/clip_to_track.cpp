@@ -380,8 +380,8 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
     const ClipSetup& clip = experiment.clips[i];
     if (clip.file.empty()) {
       const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
-      results.tracks[i] =
-          read_track(clip.track, downhill, clip.column, clip.speeds_alone ? SpeedsAlone::taken : SpeedsAlone::refused);
+      results.tracks[i] = read_track(clip.track, downhill, clip.column,
+                                     clip.speeds_alone ? SpeedsAlone::taken : SpeedsAlone::refused, clip.image_units);
       if (clip.mass_assumed && !results.tracks[i].force_n.empty()) {
         throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, with a recorded force (force_n)",
                                            "the moving mass in kilograms: the force accelerates it by F/m"});

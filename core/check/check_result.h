@@ -45,6 +45,7 @@ struct MotionLook {
   std::size_t positions = 0;
   double distance_m = 0.0;
   double noise_m = 0.0;                     ///< of a position, from its neighbours
+  double spread_m = 0.0;                    ///< of the positions about their mean; 0 if a force was recorded
   std::optional<double> counted;            ///< the step, if x goes on by the same from row to row, as no body does
   double frame_s = 0.0;                     ///< mean time from one position to the next
   std::optional<double> acceleration_m_s2;  ///< typical size; none if noise hides it, or a force was recorded

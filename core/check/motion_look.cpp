@@ -46,6 +46,7 @@ constexpr double kOffStretch = 0.05;                        // of the distance t
 constexpr double kLostInNoise = 0.4;                        // of the distance: positions at rest span more than that,
 constexpr std::size_t kFewestToRest = 40;                   // if they are so many,
 constexpr double kLeastLost_m = 0.01;                       // and are not one step of rounding apart
+constexpr double kSpreadOfRest = 1.15;                      // times the noise: a distance of 2.5 times has more
 constexpr double kSureSds = 3.0;                            // of the acceleration of a stretch
 constexpr double kKeepsSpeed = 0.75;                        // of the speed at its end
 
@@ -212,6 +213,21 @@ double bend_of(std::span<const MarkerSighting> sightings) {
 
 }  // namespace
 
+namespace {
+
+double spread_of(std::span<const double> x_m) {
+  const Eigen::Map<const Eigen::ArrayXd> x(x_m.data(), static_cast<Eigen::Index>(x_m.size()));
+  return std::sqrt((x - x.mean()).square().mean());
+}
+
+/// Whether the positions scatter about one place. A body that covers D at a steady speed has a spread of D/√12 beside
+/// its noise.
+bool rests(const MotionLook& look) {
+  return look.positions >= kFewestToRest && look.spread_m > 0.0 && look.spread_m < kSpreadOfRest * look.noise_m;
+}
+
+}  // namespace
+
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced) {
   MotionLook look;
@@ -230,6 +246,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   const Motion steady = without_outliers(t_s, x_m);
   t_s = steady.t_s;
   x_m = steady.x_m;
+  look.spread_m = spread_of(x_m);
   find_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m, look);
   if (!look.acceleration_m_s2 && is_parabola(t_s, x_m, kOffWhole * look.distance_m)) {
     find_acceleration(t_s, x_m, x_m.size(), noise_m, look);
@@ -322,6 +339,8 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   } else if (look.positions >= kFewestToRest && look.noise_m > kLeastLost_m &&
              look.noise_m > kLostInNoise * look.distance_m) {
     book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
+  } else if (rests(look)) {
+    book.add(Severity::change, found::LostInNoise{look.noise_m, look.distance_m});
   } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
   } else if (sure > most || look.speeding_up_m_s2 > kFarAboveGravity * gravity_m_s2) {

@@ -39,6 +39,14 @@ bool is_along_y(Downhill downhill);
 /// "+X", "-X", "+Y", "-Y", as in experiment.toml.
 std::string name_of(Downhill downhill);
 
+/// What turns a table that a program made of images into seconds and metres, where it counts frames and pixels.
+struct ImageUnits {
+  std::optional<double> frame_rate_hz;  ///< of its frame numbers
+  std::optional<double> px_per_m;       ///< of its lengths in pixels
+  double px_per_m_sd = 0.0;
+  bool for_this_table = false;  ///< stated for one table, which is refused if it does not need them
+};
+
 struct PixelPoint {
   double x = 0.0, y = 0.0;
   bool operator==(const PixelPoint&) const = default;
@@ -61,6 +69,7 @@ struct ClipSetup {
   std::string column = {};  ///< for an exported table the column of x, for a project the point mass: name or number;
                             ///< empty: found automatically
   RecordedBy recorded_by = RecordedBy::unstated;  ///< of a track
+  ImageUnits image_units = {};                    ///< of an exported table
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
   bool mass_assumed = false;     ///< for a file on its own: mass_kg is assumed, not stated

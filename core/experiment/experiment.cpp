@@ -248,6 +248,16 @@ void check_downhill(const Experiment& experiment, const TomlTable& root, const s
       "\"+X\" or \"-X\", along the pattern's longer row (\"+Y\" and \"-Y\" need [scale], or a Tracker project)");
 }
 
+/// Of tables of frames and pixels in this folder.
+ImageUnits image_units_of(const Experiment& experiment) {
+  ImageUnits units;
+  if (experiment.camera) units.frame_rate_hz = experiment.camera->frame_rate_hz;
+  if (!experiment.scale) return units;
+  units.px_per_m = experiment.scale->px_per_m;
+  units.px_per_m_sd = experiment.scale->px_per_m_sd;
+  return units;
+}
+
 /// The most common mistake of a new user: no folder, a wrong one, or a file inside it.
 void check_folder(const fs::path& path) {
   const std::string wanted = "a folder with an experiment.toml (glidelab new FOLDER makes one that explains every key)";
@@ -303,6 +313,7 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
   const RecordedBy recorder = read_recorder(root);
   for (ClipSetup& clip : experiment.clips) {
     clip.recorded_by = recorder;
+    clip.image_units = image_units_of(experiment);
     if (clip.file.empty() || recorder != RecordedBy::sensor) continue;
     root.reject("recorded_by", fmt::format("\"sensor\" with clip \"{}\", which has images", clip.name),
                 "nothing, or \"camera\": it says what measured the positions of a track");

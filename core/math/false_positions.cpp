@@ -22,6 +22,9 @@ constexpr std::size_t kPartWithin = 10;   // one in so many positions may lie in
 constexpr std::size_t kPartAtEnd = 20;    // and in one at an end
 constexpr double kMeets = 0.25;           // of the smaller jump
 constexpr double kNoBody_m_s2 = 200.0;    // 20 g: no hand takes a body that far within a step
+constexpr double kOverTurn = 20.0;        // times a usual acceleration: noise has seven times the median once in 10^5
+constexpr std::size_t kFewestTurns = 6;   // two outliers make as many, if they lie side by side
+constexpr std::size_t kFurthestTurn = 4;  // positions from one to the next
 constexpr double kPartOfRange = 0.5;      // of the widest stretch: two such are two motions
 
 /// Equal neighbouring values, [from, to).
@@ -245,7 +248,53 @@ std::optional<StrayPositions> stray_runs(std::span<const double> t_s, std::span<
   return stray;
 }
 
+/// The size of the acceleration at each position but the first and the last.
+std::vector<double> accelerations(std::span<const double> t_s, std::span<const double> x) {
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double before = (x[i] - x[i - 1]) / (t_s[i] - t_s[i - 1]), after = (x[i + 1] - x[i]) / (t_s[i + 1] - t_s[i]);
+    sizes.push_back(std::abs(2.0 * (after - before) / (t_s[i + 1] - t_s[i - 1])));
+  }
+  return sizes;
+}
+
+/// The turns of one end, and how many of the accelerations before or behind it belong to them.
+struct TurningEnd {
+  std::vector<double> turns;
+  std::size_t size = 0;
+};
+
+template <typename Iterator>
+TurningEnd turning_end(Iterator from, Iterator to, double least) {
+  TurningEnd end;
+  std::size_t i = 0;
+  for (Iterator at = from; at != to && i <= end.size + kFurthestTurn; ++at, ++i) {
+    if (*at <= least) continue;
+    end.turns.push_back(*at);
+    end.size = i + 1;
+  }
+  if (end.turns.size() < kFewestTurns) return {};
+  return end;
+}
+
 }  // namespace
+
+std::optional<ScatteredEnds> scattered_ends(std::span<const double> t_s, std::span<const double> x) {
+  const std::vector<double> sizes = accelerations(t_s, x);
+  if (sizes.size() < kFewestSteps) return {};
+  const double least = std::max(kNoBody_m_s2, kOverTurn * quantile(sizes, 0.5));
+  const TurningEnd start = turning_end(sizes.begin(), sizes.end(), least),
+                   end = turning_end(sizes.rbegin(), sizes.rend(), least);
+  if (start.size + end.size == 0 || 2 * (start.size + end.size) > x.size()) return {};
+  const double usual = quantile(
+      {sizes.begin() + static_cast<std::ptrdiff_t>(start.size), sizes.end() - static_cast<std::ptrdiff_t>(end.size)},
+      kTypicalOfSteps);
+  // The last turn is at a place of the body: the first acceleration is that of the second position.
+  ScatteredEnds ends;
+  if (start.size > 0 && quantile(start.turns, 0.5) > kOverTurn * usual) ends.at_start = start.size;
+  if (end.size > 0 && quantile(end.turns, 0.5) > kOverTurn * usual) ends.at_end = end.size;
+  return ends.at_start + ends.at_end > 0 ? std::optional(ends) : std::nullopt;
+}
 
 std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std::span<const double> x) {
   const std::vector<EqualRun> runs = equal_runs(x);

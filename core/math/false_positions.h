@@ -55,6 +55,22 @@ struct StrayPositions {
 /// Times rise. None if nothing strays, or if fewer than eight steps show the speed of the motion.
 std::optional<StrayPositions> stray_positions(std::span<const double> t_s, std::span<const double> x);
 
+/// How many positions at each end of a recording lie anywhere.
+struct ScatteredEnds {
+  std::size_t at_start = 0, at_end = 0;
+};
+
+/// Before it has found the body, or after it has lost it, a tracker may put it anywhere.
+///
+/// The path turns at a position if its acceleration there is above both 20 g and twenty times the median one. An end is
+/// scattered if it has six turns or more, none of them more than four positions from the next; it goes to the last of
+/// them, which is at the body's own place. The median of these turns is above twenty times the acceleration of nine
+/// tenths of the positions between the ends, so that neither a coarse rounding nor a vibration counts; and between the
+/// ends lies half of all positions or more.
+///
+/// Times rise. None if no end is scattered.
+std::optional<ScatteredEnds> scattered_ends(std::span<const double> t_s, std::span<const double> x);
+
 /// The values without the flagged ones.
 std::vector<double> without_flagged(const std::vector<double>& values, const std::vector<bool>& flagged);
 

@@ -102,10 +102,28 @@ struct RowsIncomplete {
   std::size_t rows = 0;
 };
 
+/// Rows of a table in which its own measure of certainty is below `least`, and that are left out.
+struct UnlikelyLeftOut {
+  std::string column;  ///< of the measure
+  std::size_t rows = 0;
+  double least = 0.0;
+};
+
+/// Frame numbers and pixels of a table, and what they were divided by; 0 for what the table has itself.
+struct ImageUnitsTaken {
+  double frame_rate_hz = 0.0, px_per_m = 0.0;
+  bool exact_scale = false;
+};
+
 /// Values that a sensor or a tracker wrote while it saw nothing, and that are left out.
 struct PositionsUnseen {
   std::size_t positions = 0;
   double value_m = 0.0, from_s = 0.0;  ///< of the first of them
+};
+
+/// Positions at the ends of a recording that lie anywhere, and that are left out.
+struct PositionsScattered {
+  std::size_t at_start = 0, at_end = 0;
 };
 
 /// Runs of positions that lie off the motion, as if of something else, and that are left out.
@@ -394,18 +412,17 @@ struct FitScatters {
   bool motions_differ = false;
 };
 
-using AnyNote =
-    std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
-                 SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath,
-                 CountedAlongMotion, RowsIncomplete, PositionsUnseen, PositionsAstray, ColumnsGuessed, PathBends,
-                 RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip, PositionsFilledIn,
-                 AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners,
-                 CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
-                 MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost,
-                 DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
-                 FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
-                 GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
-                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
+using AnyNote = std::variant<
+    FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps, SheetTaken,
+    ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion, RowsIncomplete,
+    UnlikelyLeftOut, ImageUnitsTaken, PositionsUnseen, PositionsScattered, PositionsAstray, ColumnsGuessed, PathBends,
+    RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip, PositionsFilledIn,
+    AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners, CornersErrTogether,
+    UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy,
+    MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost, DarkMarker, DiscMarker, NotOfStatedSize, NoRay,
+    SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
+    NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
+    InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

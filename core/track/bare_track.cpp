@@ -131,6 +131,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.speeds_alone = speeds;
   clip.column = options.column;
   clip.recorded_by = options.recorded_by;
+  clip.image_units = {options.frame_rate_hz, options.px_per_m, 0.0, true};
   const auto own_mass = options.mass_of_file.find(path);
   const bool has_own_mass = own_mass != options.mass_of_file.end();
   clip.mass_kg = has_own_mass ? own_mass->second : options.mass_kg.value_or(1.0);
@@ -149,14 +150,17 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
 }
 
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
-                     SpeedsAlone speeds) {
-  if (is_tracker_project(file)) return read_tracker_project(file, downhill, column);
+                     SpeedsAlone speeds, const ImageUnits& units) {
+  if (is_tracker_project(file)) {
+    refuse_unneeded(units, file.string(), "a Tracker project, with times and a scale of its own");
+    return read_tracker_project(file, downhill, column);
+  }
   if (downhill && is_along_y(*downhill)) {
     throw base::InputError(base::Issue{file.string(), 0, "downhill",
                                        fmt::format("\"{}\" for a table of positions", name_of(*downhill)),
                                        "\"+X\" or \"-X\": x is the column that `column` names, whatever it is called"});
   }
-  return read_track_csv(file, downhill ? std::optional(sign_of(*downhill)) : std::nullopt, column, speeds);
+  return read_track_csv(file, downhill ? std::optional(sign_of(*downhill)) : std::nullopt, column, speeds, units);
 }
 
 }  // namespace glidelab::core

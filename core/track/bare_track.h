@@ -29,6 +29,8 @@ struct TrackFileOptions {
   std::vector<double> masses_kg = {};
   std::map<std::filesystem::path, double> mass_of_file = {};  ///< kg; of files that have their own
   RecordedBy recorded_by = RecordedBy::unstated;
+  std::optional<double> frame_rate_hz = {};   ///< of a table that counts frames
+  std::optional<double> px_per_m = {};        ///< of a table in pixels
   SpeedsAlone speeds = SpeedsAlone::refused;  ///< also of a folder
 };
 
@@ -57,8 +59,9 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
 ///
 /// For a Tracker project (is_tracker_project()) read_tracker_project(), for any other file read_track_csv(). `column`
 /// is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is an
-/// InputError there, and an empty value means that its x is positive downhill.
+/// InputError there, and an empty value means that its x is positive downhill. InputError for units of images that were
+/// stated for this file, which has seconds or metres of its own.
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
-                     SpeedsAlone speeds = SpeedsAlone::refused);
+                     SpeedsAlone speeds = SpeedsAlone::refused, const ImageUnits& units = {});
 
 }  // namespace glidelab::core

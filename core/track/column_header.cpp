@@ -33,7 +33,7 @@ std::string_view without_brackets(std::string_view field) {
 
 bool looks_like_a_unit(std::string_view field) {
   if (without_brackets(field).size() < field.size()) return true;
-  if (metres_per(field) || seconds_per(field)) return true;
+  if (metres_per(field) || seconds_per(field) || is_pixels(field)) return true;
   // m/s, m/s^2, m/s², N, 1, °: short and without the name of a quantity.
   const auto slash = field.find('/');
   if (slash != std::string_view::npos) return metres_per(field.substr(0, slash)).has_value() || field.size() <= 6;
@@ -55,6 +55,23 @@ bool all_that_is_there(const std::vector<std::string>& fields, Predicate predica
 bool is_index(std::string_view bracketed) {
   return bracketed.find_first_of("0123456789") != std::string_view::npos &&
          bracketed.find_first_not_of("0123456789 ") == std::string_view::npos;
+}
+
+/// "v in km/h", "v / m/s", "speed m/s": their unit ends in one of time, or of nothing known.
+void take_speed_unit(std::string& name, std::string& unit) {
+  for (const std::string_view speed : {"cm/s", "mm/s", "km/h", "m/s"}) {
+    if (!name.ends_with(speed) || name.size() == speed.size()) continue;
+    std::string_view before = std::string_view(name).substr(0, name.size() - speed.size());
+    if (std::string_view(" /,").find(before.back()) == std::string_view::npos) continue;
+    before = trimmed(before);
+    for (const std::string_view between : {"/", " in", " en", " em"}) {
+      if (before.ends_with(between)) before.remove_suffix(between.size());
+    }
+    if (trimmed(before).empty()) continue;
+    unit = std::string(speed);
+    name = std::string(trimmed(before));
+    return;
+  }
 }
 
 /// "Run 1: Time (s)", "Time (s) Run #1", "Position, Run #2 (m)", "x_cm".
@@ -95,20 +112,31 @@ TableColumn column_of(const std::string& text) {
     name = std::string(trimmed(std::string_view(name).substr(0, at)));
     break;
   }
+  // A part of the body, as SLEAP writes it: "thorax.x", "thorax.score".
+  if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0) {
+    const std::string of_part = small.substr(dot + 1);
+    if (of_part == "x" || of_part == "y" || of_part == "score") {
+      column.run = name.substr(0, dot);
+      column.name = of_part;
+      if (of_part != "score" && column.unit.empty()) column.unit = "px";
+      return column;
+    }
+  }
   const auto underscore = name.rfind('_');
   if (column.unit.empty() && underscore != std::string::npos && underscore > 0) {
     const std::string_view tail = std::string_view(name).substr(underscore + 1);
-    if (metres_per(tail) || seconds_per(tail)) {
+    if (metres_per(tail) || seconds_per(tail) || is_pixels(tail)) {
       column.unit = std::string(tail);
       name.resize(underscore);
     }
   }
+  if (column.unit.empty()) take_speed_unit(name, column.unit);
   // "x / cm", "t in s", "temps en s", "x em m", "x, cm".
   for (const std::string_view between : {"/", " in ", " en ", " em ", ","}) {
     const auto at = name.rfind(between);
     if (!column.unit.empty() || at == std::string::npos || at == 0) continue;
     const std::string_view tail = trimmed(std::string_view(name).substr(at + between.size()));
-    if (!metres_per(tail) && !seconds_per(tail)) continue;
+    if (!metres_per(tail) && !seconds_per(tail) && !is_pixels(tail)) continue;
     column.unit = std::string(tail);
     name = std::string(trimmed(std::string_view(name).substr(0, at)));
   }
@@ -123,6 +151,21 @@ bool is_time_name(std::string_view name) {
                                                            "tempo",   "tijd",  "czas",     "tid",   "elapsed time",
                                                            "seconds", "times", "timestamp"};
   return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
+}
+
+bool is_frame_column(const TableColumn& column) {
+  static constexpr std::array<std::string_view, 19> kNames{
+      "frame",     "frames",      "frame number", "frame no", "frame #", "frame_number", "framenumber",
+      "frame_idx", "frame index", "frame_index",  "frame_id", "frameid", "imagen",       "fotograma",
+      "bild",      "image",       "fotogramma",   "klatka",   "cuadro"};
+  return column.unit.empty() && std::find(kNames.begin(), kNames.end(), lower(column.name)) != kNames.end();
+}
+
+bool is_likelihood_column(const TableColumn& column) {
+  const std::string name = lower(column.name);
+  return (name == "likelihood" || name == "confidence") && std::ranges::all_of(column.values, [](const auto& value) {
+           return !value || (*value >= 0.0 && *value <= 1.0);
+         });
 }
 
 bool is_time_column(const TableColumn& column) {
@@ -183,7 +226,34 @@ bool names_several_columns(const std::vector<std::string>& line, const std::vect
 
 }  // namespace
 
+namespace {
+
+/// The columns of DeepLabCut's tables: frame numbers, then x, y and likelihood of each part of the body, which the line
+/// "bodyparts" names. Empty for any other header.
+std::vector<TableColumn> columns_of_body_parts(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
+  const auto line_of = [&](std::string_view first) {
+    return std::ranges::find_if(lines, [&](const auto& line) { return !line.empty() && lower(line.front()) == first; });
+  };
+  const auto parts = line_of("bodyparts"), coordinates = line_of("coords"), animals = line_of("individuals");
+  if (parts == lines.end() || coordinates == lines.end()) return {};
+  if (parts->size() != width || coordinates->size() != width) return {};
+  std::vector<TableColumn> columns(1);
+  columns.front().text = columns.front().name = "frame";
+  for (std::size_t c = 1; c < width; ++c) {
+    TableColumn column;
+    column.name = column.text = (*coordinates)[c];
+    column.run = (*parts)[c];
+    if (animals != lines.end() && animals->size() == width) column.run = (*animals)[c] + " " + column.run;
+    if (column.name == "x" || column.name == "y") column.unit = "px";
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+}  // namespace
+
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
+  if (std::vector<TableColumn> parts = columns_of_body_parts(lines, width); !parts.empty()) return parts;
   auto header = lines;
   std::vector<std::string> runs, units;
   if (header.size() > 1 &&
@@ -249,8 +319,13 @@ constexpr std::array<Unit, 22> kPrefixes{
      {"quil\xC3\xB4", 1e3},  {"quil\xC3\xB3", 1e3},  {"quilo", 1e3},          {"chilo", 1e3},
      {"milis", 1e-3},  // Portuguese: milissegundos
      {"micros", 1e-6}}};
-constexpr std::array<Unit, 5> kOtherLengths{
-    {{"inch", 0.0254}, {"inches", 0.0254}, {"zoll", 0.0254}, {"foot", 0.3048}, {"feet", 0.3048}}};
+constexpr std::array<Unit, 7> kOtherLengths{{{"inch", 0.0254},
+                                             {"inches", 0.0254},
+                                             {"zoll", 0.0254},
+                                             {"foot", 0.3048},
+                                             {"feet", 0.3048},
+                                             {"micron", 1e-6},
+                                             {"microns", 1e-6}}};
 template <std::size_t N>
 std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
   const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
@@ -271,6 +346,11 @@ std::optional<double> word_factor(Words words, std::string_view word) {
 }
 
 }  // namespace
+
+bool is_pixels(std::string_view unit) {
+  const std::string word = lower(unit);
+  return word == "px" || word == "pixel" || word == "pixels";
+}
 
 std::optional<double> metres_per(std::string_view unit) {
   const std::optional<double> symbol = factor(kLengths, unit);

@@ -38,6 +38,15 @@ struct ColumnTable {
 std::optional<double> metres_per(std::string_view unit);
 std::optional<double> seconds_per(std::string_view unit);
 
+/// "px", "pixel", "pixels".
+bool is_pixels(std::string_view unit);
+
+/// "frame", "Bild", "fotograma": counts images and is no time.
+bool is_frame_column(const TableColumn& column);
+
+/// "likelihood", "confidence", of 0 to 1: how sure a program is that it sees the body there.
+bool is_likelihood_column(const TableColumn& column);
+
 /// "t", "time", "Zeit", …
 bool is_time_name(std::string_view name);
 
@@ -59,7 +68,8 @@ bool is_sensor_column(const TableColumn& column);
 /// The header lines of an exported table, split into name, unit and run of each of its `width` columns, which have no
 /// values yet. The lines, first to last: runs (if all fields mention a run, a set or "latest", or if there are fewer
 /// fields than names below, one of which is a time: "mass A" above t, x, y), names, short names (ignored), units. All
-/// but the names may be missing.
+/// but the names may be missing. DeepLabCut has lines of its own, which begin with "bodyparts" and "coords": a run is
+/// then a part of the body, in pixels.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
 
 /// Whether all that is there of a header line are units: "[s]", "m", "m/s".

@@ -13,6 +13,7 @@
 /// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value. Times
 /// of day ("14:03:07.25", also after a date) are seconds from the first row where no other column is named as one of
 /// times, and no values elsewhere.
+/// The parts of a body that DeepLabCut ("bodyparts", "coords") and SLEAP ("thorax.x") follow are runs, in pixels.
 /// Brackets around digits belong to the name: "cal[0]".
 #pragma once
 

@@ -74,6 +74,14 @@ bool is_force(const TableColumn& column) {
   return column.unit == "N" || lower(column.name) == "force";
 }
 
+base::InputError speeds_refused(const ColumnTable& table, const std::string& found) {
+  return wrong_column(
+      table, found,
+      "positions over time; `glidelab analyze` without --with also takes speeds. Integrated speeds would give "
+      "intervals that are too narrow. Export the distance as well: an encoder counts it, a motion sensor "
+      "measures it");
+}
+
 /// Speeds, accelerations or forces alone are not a track, and a user who exported them should know why. Nothing is
 /// refused if there is a column besides.
 void refuse_without_positions(const ColumnTable& table) {
@@ -87,13 +95,7 @@ void refuse_without_positions(const ColumnTable& table) {
     accelerations |= acceleration;
     forces |= force;
   }
-  if (speeds) {
-    throw wrong_column(
-        table, "speeds without positions, " + columns_text(table),
-        "positions over time; `glidelab analyze` without --with also takes speeds. Integrated speeds would give "
-        "intervals that are too narrow. Export the distance as well: an encoder counts it, a motion sensor "
-        "measures it");
-  }
+  if (speeds) throw speeds_refused(table, "speeds without positions, " + columns_text(table));
   if (accelerations) {
     throw wrong_column(table, "accelerations without positions, " + columns_text(table),
                        "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
@@ -296,16 +298,8 @@ ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) 
                   found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
 }
 
-/// "frame", "Bild", "fotograma": counts images and is no time.
-bool is_frame_column(const TableColumn& column) {
-  static constexpr std::array<std::string_view, 14> kNames{
-      "frame",  "frames",    "frame number", "frame no", "frame #",    "frame_number", "framenumber",
-      "imagen", "fotograma", "bild",         "image",    "fotogramma", "klatka",       "cuadro"};
-  return column.unit.empty() && std::find(kNames.begin(), kNames.end(), lower(column.name)) != kNames.end();
-}
-
 /// `named`: a person said which column is x. Of two columns the other then holds the times, if they rise.
-std::size_t time_column(const ColumnTable& table, std::size_t place, bool named) {
+std::size_t time_column(const ColumnTable& table, std::size_t place, bool named, FrameNumbers frame_numbers) {
   if (!table.has_header && table.columns.size() == 2) return 1 - place;
   if (!table.has_header) {
     const std::size_t first = unnamed_time(table);
@@ -325,9 +319,10 @@ std::size_t time_column(const ColumnTable& table, std::size_t place, bool named)
   }
   const auto frames = std::find_if(table.columns.begin(), table.columns.end(), is_frame_column);
   if (times.empty() && frames != table.columns.end()) {
+    if (frame_numbers == FrameNumbers::are_times) return static_cast<std::size_t>(frames - table.columns.begin());
     throw wrong_column(
         table, fmt::format("no times for \"{}\", only frame numbers (\"{}\")", table.columns[place].text, frames->text),
-        "a column of times: divide the frame numbers by the frame rate, and call the column t (s)");
+        "the frame rate (--frame-rate, or frame_rate_hz of [camera] in experiment.toml), or a column of times");
   }
   throw wrong_column(table,
                      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
@@ -354,9 +349,13 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 
 }  // namespace
 
-ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes) {
+ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, FrameNumbers frame_numbers,
+                             std::vector<Note>& notes) {
   ChosenColumns chosen = asked.empty() ? place_columns(table, notes) : only(asked_column(table, asked));
-  chosen.time = time_column(table, chosen.place, !asked.empty());
+  if (!asked.empty() && metres_per_second(table.columns[chosen.place].unit)) {
+    throw speeds_refused(table, fmt::format("speeds in \"{}\"", table.columns[chosen.place].text));
+  }
+  chosen.time = time_column(table, chosen.place, !asked.empty(), frame_numbers);
   if (asked.empty() && is_height_column(table.columns[chosen.place])) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
@@ -365,11 +364,13 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   return chosen;
 }
 
-std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked) {
-  const auto is_other = [](const TableColumn& column) {
-    return !is_time_column(column) && !is_speed(column) && !is_acceleration(column) && !is_force(column);
+std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked,
+                                           FrameNumbers frame_numbers) {
+  const auto is_length = [](const TableColumn& column) {
+    return is_place_column(column) || is_height_column(column) || is_pixels(column.unit) ||
+           metres_per(column.unit).has_value();
   };
-  if (std::ranges::any_of(table.columns, is_other)) return {};
+  if (asked.empty() && std::ranges::any_of(table.columns, is_length)) return {};
   const std::vector<std::size_t> found = columns_that(table, [](const TableColumn& column) {
     return is_speed(column) && (!is_time_column(column) || is_own_speed(column));
   });
@@ -380,12 +381,18 @@ std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::
   }
   ChosenColumns chosen = only(asked.empty() ? found.front() : asked_column(table, asked));
   if (!std::ranges::count(found, chosen.place)) return {};
-  chosen.time = time_column(table, chosen.place, !asked.empty());
+  chosen.time = time_column(table, chosen.place, !asked.empty(), frame_numbers);
   return chosen;
 }
 
 double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
-  return factor_of(table, column, metres_per, "m, dm, cm, mm, um, km, in or ft", "metres", notes);
+  return factor_of(
+      table, column, metres_per,
+      is_pixels(column.unit)
+          ? "the scale (--px-per-m, or [scale] in experiment.toml: its pixels in a metre), or lengths in m, "
+            "cm or mm"
+          : "m, dm, cm, mm, um, km, in or ft",
+      "metres", notes);
 }
 
 double metres_per_second_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {

@@ -31,12 +31,18 @@
 
 namespace glidelab::core {
 
-/// InputError: no or several candidates for x or t, a curved path.
-ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes);
+/// Whether a column of frame numbers serves as that of times, where no other does.
+enum class FrameNumbers { are_no_times, are_times };
 
-/// The columns of a table that has speeds and no positions, where `place` is the one of the speeds; empty for any other
-/// table. InputError: several speeds and none requested; no such column; no or several columns of time.
-std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked);
+/// InputError: no or several candidates for x or t, a curved path.
+ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, FrameNumbers frame_numbers,
+                             std::vector<Note>& notes);
+
+/// The columns of a table that has speeds and no positions, or of which a column of speeds is requested, where `place`
+/// is the one of the speeds; empty for any other table. InputError: several speeds and none requested; no such column;
+/// no or several columns of time.
+std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked,
+                                           FrameNumbers frame_numbers);
 
 /// Metres (or seconds, or metres a second) per number of a column; adds a note if it states no unit. InputError for
 /// another unit.

@@ -69,6 +69,13 @@ void leave_out_false_positions(TrackData& track) {
     track.notes.emplace_back(PositionsUnseen{unseen->count, unseen->value, unseen->from_s});
     leave_out(unseen->is_unseen, track);
   }
+  if (const std::optional<ScatteredEnds> ends = scattered_ends(track.t_s, track.x_m)) {
+    track.notes.emplace_back(PositionsScattered{ends->at_start, ends->at_end});
+    std::vector<bool> flagged(track.x_m.size(), false);
+    std::fill_n(flagged.begin(), ends->at_start, true);
+    std::fill_n(flagged.rbegin(), ends->at_end, true);
+    leave_out(flagged, track);
+  }
   if (const std::optional<StrayPositions> stray = stray_positions(track.t_s, track.x_m)) {
     track.notes.emplace_back(PositionsAstray{stray->count, stray->from_s, stray->off});
     leave_out(stray->is_stray, track);
@@ -215,24 +222,79 @@ void count_downwards(const std::vector<TrackData*>& tracks) {
   if (drop < 0.0) reverse(tracks);
 }
 
+void refuse_unneeded(const ImageUnits& units, const std::string& file, const std::string& found) {
+  if (!units.for_this_table || (!units.frame_rate_hz && !units.px_per_m)) return;
+  throw base::InputError(base::Issue{file, 0, units.frame_rate_hz ? "--frame-rate" : "--px-per-m", found,
+                                     "it for a table that counts frames or pixels only"});
+}
+
+namespace {
+
+/// The columns of a table that another program made of images, and what its numbers are divided by.
+struct OfImages {
+  double frame_rate_hz = 0.0, px_per_m = 0.0;  ///< 0 for what the table has itself
+};
+
+/// What of `units` the chosen columns need. InputError for what was stated for this table and is not needed.
+OfImages needed_of(const ImageUnits& units, const std::string& file, const TableColumn& x, const TableColumn& t) {
+  OfImages needed;
+  if (is_frame_column(t)) needed.frame_rate_hz = units.frame_rate_hz.value_or(0.0);
+  if (x.unit.empty() || is_pixels(x.unit)) needed.px_per_m = units.px_per_m.value_or(0.0);
+  if (units.frame_rate_hz && needed.frame_rate_hz == 0.0) {
+    refuse_unneeded({units.frame_rate_hz, {}, 0.0, units.for_this_table}, file, fmt::format("times (\"{}\")", t.text));
+  }
+  if (units.px_per_m && needed.px_per_m == 0.0) {
+    refuse_unneeded({{}, units.px_per_m, 0.0, units.for_this_table}, file, fmt::format("lengths in {}", x.unit));
+  }
+  return needed;
+}
+
+/// Empties the rows of x in which its own likelihood is low, with a note.
+void leave_out_unlikely(ColumnTable& table, std::size_t place, std::vector<Note>& notes) {
+  const auto certainty = std::ranges::find_if(table.columns, [&](const TableColumn& column) {
+    return is_likelihood_column(column) && column.run == table.columns[place].run;
+  });
+  if (certainty == table.columns.end()) return;
+  UnlikelyLeftOut out{certainty->text, 0, kLeastLikelihood};
+  for (std::size_t row = 0; row < table.line.size(); ++row) {
+    std::optional<double>& value = table.columns[place].values[row];
+    if (!value || !certainty->values[row] || *certainty->values[row] >= kLeastLikelihood) continue;
+    value.reset();
+    ++out.rows;
+  }
+  if (out.rows > 0) notes.emplace_back(out);
+}
+
+}  // namespace
+
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
-                       SpeedsAlone speeds) {
+                       SpeedsAlone speeds, const ImageUnits& units) {
   assert(!downhill || *downhill == 1 || *downhill == -1);
-  const ColumnTable table = read_column_table(file);
+  ColumnTable table = read_column_table(file);
   TrackData track;
   if (!table.sheet.empty()) track.notes.emplace_back(SheetTaken{table.sheet});
+  const FrameNumbers frame_numbers = units.frame_rate_hz ? FrameNumbers::are_times : FrameNumbers::are_no_times;
   const std::optional<ChosenColumns> of_speeds =
-      speeds == SpeedsAlone::taken ? choose_speeds(table, column) : std::nullopt;
-  const ChosenColumns chosen = of_speeds ? *of_speeds : choose_columns(table, column, track.notes);
+      speeds == SpeedsAlone::taken ? choose_speeds(table, column, frame_numbers) : std::nullopt;
+  const ChosenColumns chosen = of_speeds ? *of_speeds : choose_columns(table, column, frame_numbers, track.notes);
+  leave_out_unlikely(table, chosen.place, track.notes);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
   if (is_sensor_column(x)) track.sensor_column = x.text;
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
-  const double metres = downhill.value_or(1) *
-                        (of_speeds ? metres_per_second_of(table, x, track.notes) : metres_of(table, x, track.notes));
-  const bool like_x = y.unit.empty() || across.column == chosen.place;
+  const OfImages of_images = needed_of(units, table.file, x, t);
+  const double metres = downhill.value_or(1) * (of_speeds                  ? metres_per_second_of(table, x, track.notes)
+                                                : of_images.px_per_m > 0.0 ? 1.0 / of_images.px_per_m
+                                                                           : metres_of(table, x, track.notes));
+  const bool like_x = y.unit.empty() || y.unit == x.unit || across.column == chosen.place;
   const double y_metres = like_x ? metres : downhill.value_or(1) * metres_of(table, y, track.notes);
-  const double seconds = seconds_of(table, t, track.notes);
+  const double seconds =
+      of_images.frame_rate_hz > 0.0 ? 1.0 / of_images.frame_rate_hz : seconds_of(table, t, track.notes);
+  if (of_images.px_per_m > 0.0) track.scale_sd_relative = units.px_per_m_sd / of_images.px_per_m;
+  if (of_images.frame_rate_hz > 0.0 || of_images.px_per_m > 0.0) {
+    track.notes.emplace_back(
+        ImageUnitsTaken{of_images.frame_rate_hz, of_images.px_per_m, track.scale_sd_relative == 0.0});
+  }
   if (table.columns.size() > 2 || (table.has_header && !is_time_column(t))) {
     const bool run_apart = !x.run.empty() && x.text.find(x.run) == std::string::npos;
     track.notes.emplace_back(ColumnsTaken{x.text, t.text, run_apart ? x.run : ""});
@@ -294,14 +356,13 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                     few_points_expectation()});
   }
   const double step_s = median_step(track.t_s);
-  if (t.unit.empty() && step_s > kSlowestUnstated_s) {
+  if (t.unit.empty() && of_images.frame_rate_hz == 0.0 && step_s > kSlowestUnstated_s) {
     throw base::InputError(base::Issue{
         table.file, 0, fmt::format("column \"{}\"", t.text),
         fmt::format("times without a unit, {:.4g} from one to the next", step_s),
-        fmt::format(
-            "their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; divide frame numbers "
-            "by the frame rate",
-            t.name.starts_with("column ") ? "t" : t.name)});
+        fmt::format("their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; call frame numbers "
+                    "\"frame\", and state their rate (--frame-rate)",
+                    t.name.starts_with("column ") ? "t" : t.name)});
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   check_signs(track, downhill.value_or(1), table.file, fmt::format("column \"{}\"", x.text));
@@ -361,10 +422,11 @@ std::optional<std::string> own_header(const std::filesystem::path& file) {
 }  // namespace
 
 TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column,
-                         SpeedsAlone speeds) {
+                         SpeedsAlone speeds, const ImageUnits& units) {
   assert(!downhill || *downhill == 1 || *downhill == -1);
   const std::optional<std::string> header = column.empty() ? own_header(file) : std::nullopt;
-  if (!header) return import_track(file, column, downhill, speeds);
+  if (!header) return import_track(file, column, downhill, speeds, units);
+  refuse_unneeded(units, file.string(), "the header t_s, times in seconds and lengths in metres");
   const bool of_speeds = has_field(*header, "v_m_s") && !has_field(*header, "x_m");
   if (of_speeds && speeds == SpeedsAlone::refused) return import_track(file, column, downhill, speeds);  // says why
   const base::CsvTable table =

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/experiment/clip_setup.h"
 #include "core/result/analysis_note.h"
 #include "core/result/image_record.h"
 #include "core/result/results.h"
@@ -20,6 +21,9 @@ namespace glidelab::core {
 /// Fewer points than this do not determine an acceleration: a local cubic has four coefficients, and as many points
 /// again are needed for the noise.
 inline constexpr std::size_t kFewestTrackPoints = 8;
+
+/// Below it a position is not that of the body: the default of DeepLabCut (p-cutoff).
+inline constexpr double kLeastLikelihood = 0.6;
 
 /// "at least 8: …", for messages about a track of fewer points.
 std::string few_points_expectation();
@@ -49,8 +53,8 @@ struct TrackData {
   std::vector<double> v_m_s = {};  ///< measured speeds in place of positions: x_m and force_n are empty then
 };
 
-/// Leaves out the values that a sensor or a tracker writes while it sees nothing, then the positions of something else
-/// (core/math/false_positions.h), with notes that count them.
+/// Leaves out the values that a sensor or a tracker writes while it sees nothing, then those that lie anywhere at the
+/// ends, then the positions of something else (core/math/false_positions.h), with notes that count them.
 void leave_out_false_positions(TrackData& track);
 
 /// Takes every point of a track from a file as a frame in which the object was seen, without false ones; the frame
@@ -64,10 +68,16 @@ void take_rows_as_frames(TrackData& track);
 TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
                            const std::string& what);
 
+/// InputError if units of images were stated for this very file, which is `found`.
+void refuse_unneeded(const ImageUnits& units, const std::string& file, const std::string& found);
+
 /// A track from a table exported by another program (column_table.h), as text or in a workbook (workbook.h).
 ///
 /// The columns of x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. If none is stated,
-/// metres and seconds are assumed, and a note says so. Rows without time or x are left out (columns of several runs
+/// metres and seconds are assumed, and a note says so. With `units`, frame numbers are times where no column holds
+/// times, and lengths in pixels, or without a unit, are divided by the scale, whose uncertainty all positions share.
+/// Rows in which the program that followed the body gives it a likelihood below kLeastLikelihood are left out, with a
+/// note that counts them. Rows without time or x are left out (columns of several runs
 /// differ in length), and a note counts those that lie between others.
 ///
 /// x is multiplied by `downhill`. If x is a height that was not requested, a note says so (HeightTaken); its sign is
@@ -76,7 +86,7 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 /// gap that is too long (core/math/time_gap.h), fewer points than kFewestTrackPoints. A table with speeds and no
 /// positions is an InputError, or gives v_m_s; its units are m/s, cm/s, mm/s or km/h.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
-                       SpeedsAlone speeds = SpeedsAlone::refused);
+                       SpeedsAlone speeds = SpeedsAlone::refused, const ImageUnits& units = {});
 
 /// Reverses x and the force of all tracks, with a note in each; a second time takes the note back. Of tables of speeds,
 /// the speeds are reversed.
@@ -95,6 +105,6 @@ void count_downwards(const std::vector<TrackData*>& tracks);
 ///
 /// A file whose header has no `t_s`, or of which a column is requested, goes to import_track().
 TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column = {},
-                         SpeedsAlone speeds = SpeedsAlone::refused);
+                         SpeedsAlone speeds = SpeedsAlone::refused, const ImageUnits& units = {});
 
 }  // namespace glidelab::core

@@ -16,19 +16,6 @@ namespace {
 constexpr double kShowsBeside = 3.0;           // log evidence beside a remainder, above which an effect is fitted
 constexpr std::size_t kMostBesideScatter = 3;  // laws
 
-/// A fit linearised with its own remainder as noise.
-struct BesideRemainder {
-  TrackSet set;
-  MotionFit fit;
-};
-
-BesideRemainder beside_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
-  BesideRemainder beside{set, {}};
-  add_remainder(fit, sizes, beside.set);
-  beside.fit = linearise_again(beside.set, fit);
-  return beside;
-}
-
 bool shows(const EffectScan& scan) {
   return scan.visible && !scan.values.empty() && scan.log_evidence > kShowsBeside;
 }

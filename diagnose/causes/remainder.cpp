@@ -405,4 +405,18 @@ void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& 
   }
 }
 
+BesideRemainder beside_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
+  BesideRemainder beside{set, {}, sizes};
+  add_remainder(fit, sizes, beside.set);
+  beside.fit = linearise_again(beside.set, fit);
+  return beside;
+}
+
+BesideRemainder beside_own_remainder(const TrackSet& set, const MotionFit& fit) {
+  BesideRemainder beside = beside_remainder(set, fit, RemainderSpace(set, fit).likeliest().sizes);
+  MotionFit again = fit_motions(beside.set, fit.effects, fit.at, fit.late);
+  if (std::isfinite(again.cost)) beside.fit = std::move(again);
+  return beside;
+}
+
 }  // namespace glidelab::diagnose

@@ -128,4 +128,17 @@ class RemainderSpace {
 /// Adds the remainder to the noise of each motion of `set`, so that every fit, scan and evidence counts it as noise.
 void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& set);
 
+/// A fit that counts a remainder as noise, the motions with that noise, and the remainder.
+struct BesideRemainder {
+  TrackSet set;
+  MotionFit fit;
+  RemainderSizes remainder = {};
+};
+
+/// A fit linearised with its own remainder, of these sizes, as noise.
+BesideRemainder beside_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes);
+
+/// The effects of a fit beside the remainder that is likeliest for it, fitted again.
+BesideRemainder beside_own_remainder(const TrackSet& set, const MotionFit& fit);
+
 }  // namespace glidelab::diagnose

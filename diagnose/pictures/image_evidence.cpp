@@ -82,7 +82,12 @@ void add_shape(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const double sd = std::hypot(fit.line_sd_s, least_line_s, 0.05 * stated);
   const double rows = clips.front().record->height_px;
   shutter.parameters = {{"line_s", fit.line_s, sd}};
-  shutter.log_evidence = log_either_sign_evidence((fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
+  // A frame is read before the next begins. What is sheared more than that is no shutter, but a marker whose outline
+  // changes otherwise, by a codec or by its light.
+  const double longest_line_s = 1.0 / (camera.frame_rate_hz * rows);
+  const bool possible = std::abs(fit.line_s) < longest_line_s + 2.0 * sd;
+  shutter.log_evidence =
+      possible ? log_either_sign_evidence((fit.line_s - stated) / sd, longest_line_s / sd) : -kSeenInImages;
   shutter.fact = image::Shear{fit.line_s, sd, stated};
   if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
 }

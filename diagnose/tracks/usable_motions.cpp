@@ -41,7 +41,7 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
          core::motion_findings(core::look_at_motion(clip), setups[c], results.gravity_m_s2)) {
       if (is_of_units(finding.found)) doubtful.push_back({clip.name, finding.found});
       const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
-      if (fault == nullptr) continue;
+      if (fault == nullptr || finding.severity != core::Severity::unusable) continue;
       core::found::FaultWords words = core::found::fault_words(*fault);
       issues.push_back({(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
                         fmt::format("clip \"{}\"", clip.name), std::move(words.found),

@@ -65,7 +65,8 @@ void refuse_heights(const std::vector<std::filesystem::path>& inputs, const core
   for (const std::filesystem::path& input : inputs) {
     if (!core::is_bare_track(input)) continue;
     for (const core::ClipSetup& clip : core::read_tracks(input, bare).clips) {
-      for (const core::Note& note : core::read_track(clip.track, {}, clip.column).notes) {
+      for (const core::Note& note :
+           core::read_track(clip.track, {}, clip.column, core::SpeedsAlone::refused, clip.image_units).notes) {
         const auto* const taken = std::get_if<core::HeightTaken>(&note);
         if (taken == nullptr) continue;
         throw base::InputError(base::Issue{input.string(), 0, "--incline",

@@ -146,10 +146,39 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
   });
 }
 
+bool leaves_quantities(const TrackSet& set, const MotionFit& nominal, const MotionFit& with) {
+  constexpr double kWithin = 2.0;  // standard deviations
+  using Global = ParameterLayout::Global;
+  const SizeUncertainty before(set, nominal), after(set, with);
+  const auto &globals = nominal.layout->globals(), &others = with.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    using enum Global::Kind;
+    if (globals[g].kind != k && globals[g].kind != mu && globals[g].kind != alpha) continue;
+    const auto other =
+        std::ranges::find_if(others, [&](const Global& one) { return ParameterLayout::same(one, globals[g]); });
+    if (other == others.end()) continue;
+    const auto at = static_cast<Eigen::Index>(g), to = static_cast<Eigen::Index>(other - others.begin());
+    const double sd = std::max(before.sd(at), after.sd(to));
+    if (std::abs(with.at.global[to] - nominal.at.global[at]) > kWithin * sd) return false;
+  }
+  return true;
+}
+
 bool is_function_without_size(const TrackSet& set, const MotionFit& fit, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   return info.search == Search::spread && info.parameters.front().each == Each::experiment &&
          !has_certain_size(set, fit, {effect});
+}
+
+const Hypothesis* part_with_sizes(const TrackSet& set, const MotionFit& fit, const Comparison& comparison) {
+  if (!fit.late.empty()) return nullptr;  // lost frames are in the times, and not among the effects
+  std::set<std::size_t> sized;
+  for (const std::size_t e : fit.effects) {
+    if (has_certain_size(set, fit, {e})) sized.insert(e);
+  }
+  if (sized.empty() || sized.size() == fit.effects.size()) return nullptr;
+  const Hypothesis* found = find(comparison, sized);
+  return found != nullptr && found->fit > 0 ? found : nullptr;
 }
 
 namespace {

@@ -35,12 +35,20 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
 /// be 0.
 bool is_function_without_size(const TrackSet& set, const MotionFit& fit, std::size_t effect);
 
+/// Whether an explanation shifts none of the quantities of the nominal model, K, mu and the inclinations, by more than
+/// two standard deviations of its own fit or of the nominal one.
+bool leaves_quantities(const TrackSet& set, const MotionFit& nominal, const MotionFit& with);
+
 /// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell
 /// from them have one in their place (a cable for a bumper that was barely touched). If none has, the explanation of
 /// those with a size alone, since a drag of size 0 beside a wrong frame rate is no cause, unless they leave more of the
 /// gap: of two uncertain parameters together the effect can be certain. Nor are those left out that are clearly
 /// likelier than what would remain. Null if all have a size, or if there is no such fit.
 const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
+
+/// What has a certain size in this fit of several effects, as an explanation with a fit of its own. Null if all of them
+/// have, or none, if there is no such explanation, or if frames are lost, whose number is certain.
+const Hypothesis* part_with_sizes(const TrackSet& set, const MotionFit& fit, const Comparison& comparison);
 
 /// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
 /// one that takes most in place of both. Returns the explanation with that cause alone; null if the sequence names it

@@ -59,6 +59,18 @@ bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, cons
          sequence.gap_before * sequence.gap_before - 1.0 < 1.0;
 }
 
+bool may_take_nothing(const CauseSequence& sequence) {
+  if (sequence.causes.empty() || sequence.gap_before * sequence.gap_before - 1.0 >= 1.0) return false;
+  const auto& interval = sequence.causes.front().share_interval95;
+  return interval && interval->low <= 0.0;
+}
+
+double probability_of_scatter(const Comparison& comparison) {
+  double sum = 0.0;
+  for (const Hypothesis& one : comparison.all) sum += is_scatter_alone(one) ? one.probability : 0.0;
+  return sum;
+}
+
 void move_to_none(const std::function<bool(const Hypothesis&)>& of, Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || one.effects.empty() || !of(one)) continue;

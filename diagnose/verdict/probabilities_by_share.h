@@ -29,6 +29,13 @@ bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
 /// half of that.
 bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison);
 
+/// Whether the first of the named causes may take nothing, by the 95 % interval of its share, of an excess that is less
+/// than the noise. A larger gap of few clips keeps its names: its interval is wide because the clips differ.
+bool may_take_nothing(const CauseSequence& sequence);
+
+/// The probability that single positions scatter, and nothing else acts.
+double probability_of_scatter(const Comparison& comparison);
+
 /// Moves the probability of the explanations for which `of` holds to `none`: what they would explain needs no cause.
 void move_to_none(const std::function<bool(const Hypothesis&)>& of, Comparison& comparison);
 

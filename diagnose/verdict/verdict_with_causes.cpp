@@ -43,12 +43,7 @@ constexpr double kNearlyAllOfGap = 0.99;   // of the excess
 constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
 constexpr double kFollowed = 2.0;     // times the noise: a gap below which large errors of single positions are errors
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
-
-double probability_of_scatter(const Comparison& comparison) {
-  double sum = 0.0;
-  for (const Hypothesis& one : comparison.all) sum += is_scatter_alone(one) ? one.probability : 0.0;
-  return sum;
-}
+constexpr double kSureIdle = 0.95;    // and an effect that shifts no quantity either
 
 /// Where the rest of the gap lies beside the named causes. Empty if nothing is left.
 std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence, int jobs) {
@@ -57,23 +52,6 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   rest.verdict = Verdict::unknown;
   add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named), jobs), rest);
   return rest.regions;
-}
-
-/// A fit that counts its own remainder as noise, the motions with that noise, and the remainder.
-struct Sized {
-  TrackSet set;
-  MotionFit fit;
-  RemainderSizes remainder = {};
-};
-
-/// The causes that keep their name, beside their own remainder, for the sizes that the verdict gives. The fit of the
-/// whole explanation has other sizes: part of one cause may have gone into another that takes no part of the gap.
-Sized sized_of(const TrackSet& set, const MotionFit& named) {
-  Sized sized{set, {}, RemainderSpace(set, named).likeliest().sizes};
-  add_remainder(named, sized.remainder, sized.set);
-  sized.fit = fit_motions(sized.set, named.effects, named.at, named.late);
-  if (!std::isfinite(sized.fit.cost)) sized.fit = linearise_again(sized.set, named);
-  return sized;
 }
 
 /// The log evidence by which the positions alone prefer an explanation of a fall, a quadratic drag alone or with the
@@ -203,7 +181,7 @@ class VerdictWithCauses {
   TrackSet gap_set_, gap_with_;
   MotionFit gap_nominal_;
   CauseSequence sequence_;
-  Sized sized_;                                // the causes that keep their name, beside their own remainder
+  BesideRemainder sized_;                      // the causes that keep their name, for the sizes that the verdict gives
   bool open_size_ = false;                     // a name whose effect may as well have no size at all is not confident
   std::set<std::size_t> empty_;                // named functions of the place without a size
   std::optional<ImpossibleSizes> impossible_;  // the explanation with these sizes
@@ -283,7 +261,17 @@ void VerdictWithCauses::put_causes_in_order() {
 }
 
 void VerdictWithCauses::size_causes() {
-  sized_ = is_settled() ? sized_of(set_, fit_of_gap()) : Sized{with(), fit_of(best_)};
+  // The fit of the whole explanation has other sizes: part of one cause may have gone into another that takes no part
+  // of the gap.
+  sized_ = is_settled() ? beside_own_remainder(set_, fit_of_gap()) : BesideRemainder{with(), fit_of(best_)};
+  if (const Hypothesis* sized = is_settled() ? part_with_sizes(sized_.set, sized_.fit, by()) : nullptr) {
+    CauseSequence of_sized = sequence_with(*sized);
+    if (may_displace(of_sized, sequence_)) {
+      best_ = *sized;
+      sequence_ = std::move(of_sized);
+      sized_ = beside_own_remainder(set_, fit_of_gap());
+    }
+  }
   // Lost frames are counted one by one: their size is certain.
   open_size_ = names_ && sequence_.is_gap && shows_in_gap(best_) && !has(best_, effect_index(ids::dropped_frames)) &&
                !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
@@ -328,7 +316,7 @@ bool VerdictWithCauses::viscous_leaves_less() const {
 
 /// The probability of an unknown cause, by the sizes of what is named.
 double VerdictWithCauses::least_unknown() const {
-  return impossible_ || !empty_.empty() ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
+  return impossible_ || !empty_.empty() || may_take_nothing(sequence_) ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
 /// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
@@ -407,15 +395,20 @@ void VerdictWithCauses::doubt_by_share(bool in_images) {
   if (!in_images) set_unknown(std::max(first_.unknown, least_unknown()), first_);
 }
 
-/// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter
-/// either: unless it is all but certain, it is a trace.
+/// Without a gap, a name must do more than small imperfections would, and shift a quantity or be certain. Scatter of
+/// single positions shifts no parameter either: unless it is all but certain, it is a trace.
 void VerdictWithCauses::move_imperfections_to_none() {
   // Scatter has no fit of its own: the verdict on it is by the noise alone.
   const bool scatter = found_ && is_scatter_alone(*found_) && claims_;
   if ((!names_ && !scatter) || found_->effects.empty()) return;
   std::vector<std::size_t> seen = found_->effects;  // by the noise alone
   if (!scatter) std::erase_if(seen, [&](std::size_t e) { return first_.effect_probability[e] < kLikelierThanNot; });
-  if (names_ && shows_in_gap(best_)) allow_for_remainders(set_, without_, jobs_, first_);
+  if (names_ && shows_in_gap(best_)) {
+    allow_for_remainders(set_, without_, jobs_, first_);
+    const bool sure =
+        std::ranges::any_of(seen, [&](std::size_t e) { return first_.effect_probability[e] > kSureIdle; });
+    if (!sure && leaves_quantities(set_, nominal(), fit_of(best_))) empty_.insert(seen.begin(), seen.end());
+  }
   const auto is_empty = [this](std::size_t e) { return empty_.contains(e); };
   move_to_none([&](const Hypothesis& one) { return std::ranges::any_of(one.effects, is_empty); }, first_);
   if (scatter && probability_of_scatter(first_) < kSureScatter) move_to_none(is_scatter_alone, first_);

@@ -10,6 +10,7 @@
 
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
+#include "core/motion/steady_fall.h"
 #include "core/result/quantity.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"
@@ -102,7 +103,8 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
                          "motion is free.");
       }
     }
-    if (const std::optional<core::SlowFall> fall = core::slow_fall(c, results.gravity_m_s2)) {
+    const std::optional<core::SlowFall> fall = core::slow_fall(c, results.gravity_m_s2);
+    if (fall && !core::is_steady_fall(c)) {  // of a constant speed the law says no more, and a note says so
       doubts.push_back(fmt::format("{}: {}.", configuration_name(results, c), slow_fall_words(*fall)));
     }
   }

@@ -90,11 +90,35 @@ struct AnalysisSentence {
     if (of.rows == 1) return "one row within the table lacks a time or x and is left out";
     return fmt::format("{} rows within the table lack a time or x and are left out", of.rows);
   }
+  std::string operator()(const core::UnlikelyLeftOut& of) const {
+    return fmt::format(
+        "{} row{} with a \"{}\" below {:.3g} {} left out: the program that followed the body was not sure of it",
+        of.rows, of.rows == 1 ? "" : "s", of.column, of.least, of.rows == 1 ? "is" : "are");
+  }
+  std::string operator()(const core::ImageUnitsTaken& of) const {
+    std::string text;
+    if (of.frame_rate_hz > 0.0)
+      text = fmt::format("the times are frame numbers, at {:.6g} frames a second", of.frame_rate_hz);
+    if (of.px_per_m == 0.0) return text;
+    return fmt::format("{}{}x is in pixels, {:.6g} of them to a metre{}", text, text.empty() ? "" : "; ", of.px_per_m,
+                       of.exact_scale ? ", taken as exact; no lens is corrected" : "; no lens is corrected");
+  }
   std::string operator()(const core::PositionsUnseen& of) const {
     return fmt::format(
         "{} positions that are all {:.6g} m, from {:.6g} s on, are left out: no motion leads there, and a sensor or a "
         "tracker writes one value while it sees nothing",
         of.positions, of.value_m + 0.0, of.from_s);  // no "-0"
+  }
+  std::string operator()(const core::PositionsScattered& of) const {
+    const std::size_t all = of.at_start + of.at_end;
+    const std::string where = of.at_end == 0 ? "the start"
+                              : of.at_start == 0
+                                  ? "the end"
+                                  : fmt::format("the start ({}) and the end ({})", of.at_start, of.at_end);
+    return fmt::format(
+        "{} position{} at {} {} left out: they jump to and fro as no body does, and as a tracker writes them where it "
+        "has not found the body",
+        all, all == 1 ? "" : "s", where, all == 1 ? "is" : "are");
   }
   std::string operator()(const core::PositionsAstray& of) const {
     const bool one = of.positions == 1;

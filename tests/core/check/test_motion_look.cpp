@@ -159,13 +159,19 @@ TEST_CASE("a count and an angle in equal steps are no positions, marks in equal 
   }
 }
 
-TEST_CASE("a tracker that jumps to and fro shows no motion, and a body at rest is another matter") {
+TEST_CASE("a tracker that jumps to and fro shows no motion, nor does a body at rest, which is one clip's matter") {
   std::mt19937_64 random(3);
   std::bernoulli_distribution other(0.5);
   CHECK(only<core::found::LostInNoise>(findings(positions([&](double) { return other(random) ? 2.0 : 0.04; }))));
-  CHECK(findings(positions([](double) { return 0.3; }, 1e-3)).empty());
+  const auto rests = [](const std::vector<core::Finding>& found) {
+    return found.size() == 1 && found[0].severity == core::Severity::change &&
+           tests::fault_as<core::found::LostInNoise>(found[0]) != nullptr;
+  };
+  CHECK(rests(findings(positions([](double) { return 0.3; }, 1e-3))));
+  CHECK(rests(findings(positions([](double) { return 0.3; }, 0.2))));
+  CHECK(rests(findings(positions([&](double) { return other(random) ? 0.301 : 0.3; }, 0.0))));  // a step of rounding
   CHECK(findings(positions(run, 0.02)).empty());
-  CHECK(findings(positions([&](double) { return other(random) ? 0.301 : 0.3; }, 0.0)).empty());  // a step of rounding
+  CHECK(findings(positions([](double t) { return 2e-3 * t; }, 1e-3)).empty());  // 4 mm in two seconds
   Positions few = positions([](double) { return 0.3; }, 1e-3);
   few.t_s.resize(12);
   few.x_m.resize(12);

@@ -158,3 +158,42 @@ TEST_CASE("a single echo in the motion, a launch after a long rest and two motio
   }
   CHECK(stray_in(by_hand).empty());
 }
+
+TEST_CASE("positions that lie anywhere before the body is found and after it is lost are counted, and no others") {
+  // x = 0.4 t² with noise of 0.5 mm; anywhere in a metre where it is not seen.
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> anywhere(0.0, 1.0);
+  std::normal_distribution<double> noise(0.0, 5e-4);
+  for (const auto& [before, after] : {std::pair{30, 25}, std::pair{12, 0}, std::pair{0, 40}}) {
+    CAPTURE(before, after);
+    std::vector<double> t_s, x;
+    for (int i = -before; i < 140 + after; ++i) {
+      t_s.push_back(i / 60.0);
+      x.push_back(i < 0 || i >= 140 ? anywhere(random) : 0.2 + 0.4 * t_s.back() * t_s.back() / 4.0 + noise(random));
+    }
+    const auto ends = core::scattered_ends(t_s, x);
+    REQUIRE(ends);
+    CHECK(std::abs(static_cast<int>(ends->at_start) - before) <= 1);  // the last may lie near the body by chance
+    CHECK(std::abs(static_cast<int>(ends->at_end) - after) <= 1);
+  }
+}
+
+TEST_CASE("a coarse rounding, a bounce, outliers, a vibration and noise throughout scatter no end") {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  const auto ends_of = [](double rate_hz, const std::function<double(int, double)>& place) {
+    std::vector<double> t_s, x;
+    for (int i = 0; i < 400; ++i) {
+      t_s.push_back(i / rate_hz);
+      x.push_back(place(i, t_s.back()));
+    }
+    return core::scattered_ends(t_s, x);
+  };
+  // Fast at first, so that a step of the rounding comes at every third position, and slow later.
+  CHECK_FALSE(
+      ends_of(1000.0, [](int, double t) { return 1e-3 * std::round(1e3 * (1.0 - std::exp(-4.0 * t)) / 12.0); }));
+  CHECK_FALSE(ends_of(500.0, [](int, double t) { return std::abs(t - 0.02); }));
+  CHECK_FALSE(ends_of(60.0, [](int i, double t) { return 0.1 * t + (i == 2 ? 0.5 : 0.0); }));
+  CHECK_FALSE(ends_of(1000.0, [](int, double t) { return 0.1 * t + (t < 0.1 ? 1e-3 * std::sin(600.0 * t) : 0.0); }));
+  CHECK_FALSE(ends_of(60.0, [&](int, double t) { return 0.1 * t + 0.3 * noise(random); }));
+}

@@ -308,3 +308,27 @@ TEST_CASE("rows that say that nothing was seen are no part of a path") {
   REQUIRE(path != nullptr);
   CHECK(path->off_deg == Approx(std::atan(0.5) * 57.29577951308232).epsilon(1e-6));
 }
+
+TEST_CASE("speeds stand beside other quantities, and their unit ends in no unit of time") {
+  const tests::TempDir dir;
+  const auto read = [&](const std::string& header, const std::string& column, core::SpeedsAlone speeds) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 20; ++i) text += fmt::format("{};{:.1f};{}\n", i, 36.0 - 0.9 * i, 140 + i % 3);
+    base::write_file(dir / "a.csv", text);
+    return core::read_track_csv(dir / "a.csv", 1, column, speeds);
+  };
+  for (const char* header : {"Zeit in s;Geschwindigkeit in km/h;Herzfrequenz", "t (s);v / km/h;pulse (1/min)",
+                             "time;speed, km/h;heart", "t / s;speed km/h;heart"}) {
+    INFO(header);
+    for (const char* column : {"", "2"}) {
+      const core::TrackData track = read(header, column, core::SpeedsAlone::taken);
+      REQUIRE(track.v_m_s.size() == 20);
+      CHECK(track.v_m_s[10] == Approx(27.0 / 3.6));
+    }
+    CHECK_THROWS_WITH(read(header, "2", core::SpeedsAlone::refused), Contains("speeds in") && Contains("positions"));
+  }
+  // Where positions stand beside them, those are the track, unless the speeds are requested.
+  const std::string both = "t (s);v (km/h);x (m)";
+  CHECK(read(both, "", core::SpeedsAlone::taken).x_m.size() == 20);
+  CHECK(read(both, "2", core::SpeedsAlone::taken).v_m_s.size() == 20);
+}

@@ -295,10 +295,10 @@ TEST_CASE("three columns without a header are t, x and y if the third follows th
   CHECK_THROWS_WITH(read(rows("0.1\t{1}e-2\t{1}e-2\n")), Contains("say which one is x"));  // times do not rise
 }
 
-TEST_CASE("frame numbers are no times, and the message says how to make some") {
+TEST_CASE("frame numbers are no times without their rate, and the message asks for it") {
   const Made made("Frame,X_m,Y_m\n" + rows("{0},0.001,{1}e-2\n"));
   CHECK_THROWS_WITH(core::read_track_csv(made.file, std::nullopt),
-                    Contains("frame numbers (\"Frame\")") && Contains("divide the frame numbers"));
+                    Contains("frame numbers (\"Frame\")") && Contains("the frame rate (--frame-rate"));
 }
 
 TEST_CASE("decimal commas between single blanks are not thousands") {

@@ -1,5 +1,6 @@
 #include "diagnose/verdict/named_explanation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -204,4 +205,41 @@ TEST_CASE("a cause that alone keeps its name has to be likelier than not by itse
   CHECK(by({kDrag}).effects == std::vector{kDrag});
   CHECK_FALSE(diagnose::is_likelier_than_not(named.set, named.comparison, by({kDrag})));
   CHECK(&by({}) == &best);
+}
+
+TEST_CASE("of several causes those that have a size beside what remains keep their name") {
+  Named named;
+  named.add({"quadratic_drag", "load_independent_friction"}, false, 0.5);
+  named.add({"quadratic_drag"}, true, 0.4);
+  const auto kept = [&](std::size_t fit) {
+    const diagnose::Hypothesis* part =
+        diagnose::part_with_sizes(named.set, named.comparison.fits[fit], named.comparison);
+    return part != nullptr ? part->effects : std::vector<std::size_t>();
+  };
+  CHECK(kept(1) == std::vector{kDrag});
+  CHECK(kept(2).empty());  // all that it names has a size
+  named.comparison.all.pop_back();
+  CHECK(kept(1).empty());  // no such explanation
+}
+
+TEST_CASE("an explanation leaves the quantities if none moves by two standard deviations, whatever its own sizes are") {
+  Named named;
+  named.add({"load_independent_friction"}, true, 0.5);
+  const diagnose::MotionFit& nominal = named.comparison.fits.front();
+  diagnose::MotionFit with = named.comparison.fits.back();
+  const auto friction = static_cast<Eigen::Index>(with.layout->first_of(named.comparison.all.front().effects.back()));
+  constexpr Eigen::Index kMu = 1;
+  const double before = diagnose::SizeUncertainty(named.set, nominal).sd(kMu),
+               after = diagnose::SizeUncertainty(named.set, with).sd(kMu), sd = std::max(before, after);
+  const auto leaves_at = [&](double off) {
+    with.at.global.head(nominal.at.global.size()) = nominal.at.global;
+    with.at.global[kMu] += off * sd;
+    return diagnose::leaves_quantities(named.set, nominal, with);
+  };
+  REQUIRE(friction >= nominal.at.global.size());
+  CHECK(leaves_at(1.9));
+  CHECK(leaves_at(-1.9));
+  CHECK_FALSE(leaves_at(2.1));
+  with.at.global[friction] *= 10.0;
+  CHECK(leaves_at(0.0));
 }

@@ -224,3 +224,20 @@ TEST_CASE("what resolves a contradicted inclination takes the place of causes th
   CHECK(probability_of(near, {kDrag}) == 0.1);
   CHECK(near.none == 0.05);
 }
+
+TEST_CASE("a name may take nothing if its share may be none of a gap that is less than the noise") {
+  diagnose::CauseSequence sequence;
+  sequence.gap_before = 1.3;  // an excess of 0.69
+  CHECK_FALSE(diagnose::may_take_nothing(sequence));
+  diagnose::ExplainedCause cause;
+  cause.share = 0.9;
+  sequence.causes = {cause};
+  CHECK_FALSE(diagnose::may_take_nothing(sequence));  // one clip: no interval
+  sequence.causes.front().share_interval95 = {-0.1, 1.9};
+  CHECK(diagnose::may_take_nothing(sequence));
+  sequence.causes.front().share_interval95 = {0.1, 1.7};
+  CHECK_FALSE(diagnose::may_take_nothing(sequence));
+  sequence.causes.front().share_interval95 = {-0.1, 1.9};
+  sequence.gap_before = 1.5;
+  CHECK_FALSE(diagnose::may_take_nothing(sequence));
+}

@@ -142,6 +142,8 @@ TEST_CASE("a fall whose line begins far below gravity is doubted, with the facto
   results.configurations[0].incline_deg = 90.0;
   CHECK(any_has(report::doubts_about(results), "slow-motion playback (4 times)"));
   CHECK(any_has(report::doubts_about(results), "in a larger unit than stated (16 times)"));
+  results.configurations[0].notes.emplace_back(core::SteadyFall{1});  // at its terminal velocity all the time
+  CHECK(report::doubts_about(results).empty());
 }
 
 TEST_CASE("points far off their line are told with the clip and the next step, on the page and in the terminal") {
