@@ -154,12 +154,6 @@ void judge_falls(const Experiment& experiment, const RecordingCheck& check, std:
       {Severity::change, {Subject::Part::clips, std::move(names)}, found::FallsSlowly{*first}, Topic::length});
 }
 
-/// A hand rests or pushes before it releases the glider; free motion turns.
-bool moves_against_launch(const ClipCheck& clip) {
-  if (!clip.against_launch || clip.against_launch->share < kLeastShareAgainstLaunch) return false;
-  return !clip.against_launch->until_s || clip.against_launch->at_a_turn;
-}
-
 /// Where the downhill stands that a clip goes by: in its own [group], or in [track].
 bool is_own_downhill(const Experiment& experiment, const ClipSetup& clip) {
   const GroupSetup* group = group_of(experiment, clip.group);
@@ -174,7 +168,7 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
   for (const ClipCheck& clip : clips) {
     const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
                                     [&](const ClipSetup& of) { return of.name == clip.name; });
-    if (setup == experiment.clips.end() || !moves_against_launch(clip)) continue;
+    if (setup == experiment.clips.end() || !moves_against_launch(clip.against_launch)) continue;
     (is_own_downhill(experiment, *setup) ? own : shared) = true;
     names.push_back(clip.name);
     if (names.size() > 1 && clip.against_launch->share <= worst.motion.share) continue;
@@ -193,6 +187,11 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
 }
 
 }  // namespace
+
+bool moves_against_launch(const std::optional<AgainstLaunch>& against) {
+  if (!against || against->share < kLeastShareAgainstLaunch) return false;
+  return !against->until_s || against->at_a_turn;
+}
 
 bool is_lit_from_one_side(const ClipCheck& clip) {
   return clip.light && clip.light->pull_px > kLargePull * clip.marker_px;

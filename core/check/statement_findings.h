@@ -4,12 +4,17 @@
 /// Each is reported once, with the clips that show it and the keys, one of which is wrong.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
 
 namespace glidelab::core {
+
+/// Whether a quarter or more of the free motion is opposite to its stated launch, throughout or until a turn: a hand
+/// rests or pushes before it releases the glider, free motion turns.
+bool moves_against_launch(const std::optional<AgainstLaunch>& against);
 
 /// Whether the marker's light is centred off its outline's centre by more than a twentieth of its diameter.
 bool is_lit_from_one_side(const ClipCheck& clip);

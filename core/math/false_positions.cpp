@@ -289,10 +289,22 @@ std::optional<ScatteredEnds> scattered_ends(std::span<const double> t_s, std::sp
   const double usual = quantile(
       {sizes.begin() + static_cast<std::ptrdiff_t>(start.size), sizes.end() - static_cast<std::ptrdiff_t>(end.size)},
       kTypicalOfSteps);
+  std::vector<double> steps;  // sizes
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) steps.push_back(std::abs(x[i + 1] - x[i]));
+  const auto typical = [&](std::size_t from, std::size_t to, double part) {
+    return quantile(
+        {steps.begin() + static_cast<std::ptrdiff_t>(from), steps.begin() + static_cast<std::ptrdiff_t>(to)}, part);
+  };
   // The last turn is at a place of the body: the first acceleration is that of the second position.
+  const std::size_t until = steps.size() - end.size;
+  const double usual_step = typical(start.size, until, kTypicalOfSteps);
+  const auto scatters = [&](const TurningEnd& of, std::size_t from, std::size_t to) {
+    return of.size > 0 && quantile(of.turns, 0.5) > kOverTurn * usual &&
+           typical(from, to, 0.5) > kJumpAtEnd * usual_step;
+  };
   ScatteredEnds ends;
-  if (start.size > 0 && quantile(start.turns, 0.5) > kOverTurn * usual) ends.at_start = start.size;
-  if (end.size > 0 && quantile(end.turns, 0.5) > kOverTurn * usual) ends.at_end = end.size;
+  if (scatters(start, 0, start.size)) ends.at_start = start.size;
+  if (scatters(end, until, steps.size())) ends.at_end = end.size;
   return ends.at_start + ends.at_end > 0 ? std::optional(ends) : std::nullopt;
 }
 

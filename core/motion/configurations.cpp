@@ -329,7 +329,7 @@ std::vector<ConfigurationResult> configurations_of_clips(const std::vector<ClipS
     results.push_back(join_members(members, gravity, lines));
   }
   add_steady_falls(clips, gravity.m_s2, results);
-  note_statements(results, gravity.m_s2);
+  note_statements(results, clips, gravity.m_s2);
   return results;
 }
 

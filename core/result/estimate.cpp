@@ -119,7 +119,28 @@ StatedIncline stated_incline(const ConfigurationResult& configuration) {
   return {configuration.incline_deg, configuration.incline_sd_deg, "incline_deg"};
 }
 
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2) {
+namespace {
+
+constexpr double kLongestOfGlider_m = 20.0;
+
+/// By the positions, or by the speeds where nothing else was measured.
+double distance_m(const ClipResult& clip) {
+  double least = HUGE_VAL, most = -HUGE_VAL, along = 0.0;
+  for (std::size_t i = 0; i < clip.motion.size(); ++i) {
+    const MotionPoint& point = clip.motion[i];
+    if (i > 0) along += std::abs(point.v_m_s) * (point.t_s - clip.motion[i - 1].t_s);
+    least = std::min(least, point.measured_m.value_or(HUGE_VAL));
+    most = std::max(most, point.measured_m.value_or(-HUGE_VAL));
+  }
+  return most > least ? most - least : clip.speed_noise_m_s ? along : 0.0;
+}
+
+}  // namespace
+
+void note_statements(std::vector<ConfigurationResult>& results, const std::vector<ClipResult>& clips,
+                     double gravity_m_s2) {
+  const bool far =
+      std::ranges::any_of(clips, [](const ClipResult& clip) { return distance_m(clip) > kLongestOfGlider_m; });
   double least_kg = std::numeric_limits<double>::infinity();
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
@@ -130,7 +151,7 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
       result.notes.emplace_back(MassInGrams{result.mass_kg, least_kg});
     }
     // A mass that stands out against the lightest gets its own remark; here all masses may be in grams.
-    if (result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
+    if (!far && result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, {}});
     }
     if (result.incline_assumed) continue;

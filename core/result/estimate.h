@@ -69,7 +69,8 @@ StatedIncline stated_incline(const ConfigurationResult& configuration);
 
 /// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts (grossly,
 /// where no uncertainty is stated), in place of those that it added before. A configuration whose inclination is not
-/// stated cannot be contradicted.
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2);
+/// stated cannot be contradicted. What runs more than 20 m, as a sledge or a car does, may have any mass.
+void note_statements(std::vector<ConfigurationResult>& results, const std::vector<ClipResult>& clips,
+                     double gravity_m_s2);
 
 }  // namespace glidelab::core

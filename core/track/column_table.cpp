@@ -283,6 +283,13 @@ bool is_row_of_other_sign(const Fields& row, const Format& format) {
   return all && std::ranges::any_of(row, [&](std::string_view field) { return !is_number(field, format); });
 }
 
+/// A number, and nothing else: a row of data without its other values.
+bool is_incomplete(const Fields& row, const Format& format) {
+  const auto missing = std::ranges::count_if(row, is_missing);
+  const auto numbers = std::ranges::count_if(row, [&](std::string_view field) { return is_number(field, format); });
+  return numbers == 1 && missing > 0 && static_cast<std::size_t>(numbers + missing) == row.size();
+}
+
 base::Issue other_sign(const std::string& file, const Line& line, const Format& format) {
   return {file, line.number, "", fmt::format("\"{}\", with another decimal sign than the rows below", line.text),
           fmt::format("a decimal {} throughout", format.decimal == ',' ? "comma" : "point")};
@@ -392,7 +399,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   std::vector<base::Issue> issues;
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {
-    if (rows[r].size() < 2) continue;  // a title
+    if (rows[r].size() < 2 || is_incomplete(rows[r], *format)) continue;  // a title; times before anything is seen
     if (is_row_of_other_sign(rows[r], *format)) issues.push_back(other_sign(table.file, lines[r], *format));
     const bool as_wide = rows[r].size() == width || rows[r].size() == rows[first_data].size();
     if (format->delimiter == kBlanks && !as_wide) continue;  // words of a title

@@ -109,15 +109,17 @@ ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y,
   ChosenColumns chosen;
   chosen.place = x;
   const TableColumn& other = table.columns[y];
-  if (!other.unit.empty() && !metres_per(other.unit)) return chosen;  // in pixels, say: no length beside x
+  const bool pixels = is_pixels(other.unit) && (table.columns[x].unit.empty() || is_pixels(table.columns[x].unit));
+  if (!other.unit.empty() && !metres_per(other.unit) && !pixels) return chosen;  // no length beside x
   const PlanePath path = path_of(table.columns[x], other);
   if (path.x_m.size() < kFewestOfPath) return chosen;
   refuse_curve(table, x, y, path);
-  judge_bend(table, x, y, path, notes);
+  std::vector<Note> in_pixels;  // notes with lengths, which are metres
+  judge_bend(table, x, y, path, pixels ? in_pixels : notes);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
   if (upright) {
-    notes.emplace_back(MotionAlongY{range_y, range_x});
+    if (!pixels) notes.emplace_back(MotionAlongY{range_y, range_x});
     chosen.place = y;
   }
   const double from_x_deg = slant_deg(path);

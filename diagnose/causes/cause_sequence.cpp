@@ -61,9 +61,14 @@ double share_of_rest(const Step& before, const Step& after) {
   return (before.gap * before.gap - after.gap * after.gap) / excess;
 }
 
-/// Whether a cause beyond those of the verdict takes more than its uncertainty.
+/// Whether a cause takes more than the uncertainty of its share.
+bool takes_for_certain(const ExplainedCause& cause) {
+  return !cause.share_interval95 || cause.share_interval95->low > 0.0;
+}
+
+/// Whether a cause beyond those of the verdict is worth a step.
 bool is_worth(const ExplainedCause& cause) {
-  return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
+  return cause.share > kLeastShare && takes_for_certain(cause);
 }
 
 /// The parameters of effects that are no sizes: where a cable tightens, until when a hand pushes, how fast a table
@@ -198,10 +203,10 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     for (const bool laws_only : {true, false}) {
       best = best_of(laws_only);
       if (!best) continue;
-      const double share = cause_of(left[best->first], whole(), here, best->second, is_one_clip(set)).share;
-      if (share > (steps.empty() ? kLeastShare : least_named)) break;
-      // A large cause must not hide a second one that explains most of what it leaves.
-      if (!steps.empty() && share_of_rest(here, best->second) >= kMostOfRest) break;
+      const ExplainedCause cause = cause_of(left[best->first], whole(), here, best->second, is_one_clip(set));
+      if (cause.share > (steps.empty() ? kLeastShare : least_named)) break;
+      // A large cause must not hide a second one that for certain explains most of what it leaves.
+      if (!steps.empty() && takes_for_certain(cause) && share_of_rest(here, best->second) >= kMostOfRest) break;
       best.reset();
       if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }

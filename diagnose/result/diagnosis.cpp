@@ -5,11 +5,13 @@
 
 namespace glidelab::diagnose {
 
-bool only_statements_fail(const Diagnosis& diagnosis) {
+bool is_at_floor(const Diagnosis& diagnosis) {
   constexpr double kMostErrorsAtFloor = 7.5;  // standard errors above the floor: no more is a gap at the floor
-  const bool explained =
-      diagnosis.gap && diagnosis.gap->before < 1.0 + kMostErrorsAtFloor * diagnosis.gap->standard_error;
-  return diagnosis.verdict == Verdict::unknown && explained &&
+  return diagnosis.gap && diagnosis.gap->before < 1.0 + kMostErrorsAtFloor * diagnosis.gap->standard_error;
+}
+
+bool only_statements_fail(const Diagnosis& diagnosis) {
+  return diagnosis.verdict == Verdict::unknown && is_at_floor(diagnosis) &&
          !(diagnosis.limits.driving.empty() && diagnosis.limits.contradicted.empty());
 }
 

@@ -223,6 +223,7 @@ struct MeasuredMotion {
 struct VerdictLimits {
   std::vector<NegativeLoss> driving;
   std::vector<ContradictedIncline> contradicted;
+  std::vector<ContradictedIncline> resolved;  ///< by the nominal model, where none is left with the named effects
   std::optional<SetAside> set_aside;
 };
 
@@ -306,6 +307,9 @@ std::optional<FitsCutOff> fits_cut_off(const std::vector<RankedExplanation>& ran
 /// Whether the nominal model follows the positions to within their noise, and the verdict is unknown only because of a
 /// statement: an inclination that the motion contradicts, or a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
+
+/// Whether the nominal model follows the positions to within their noise.
+bool is_at_floor(const Diagnosis& diagnosis);
 
 /// An explanation that consists only of named effects.
 struct NamedExplanation {

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 
 #include "base/errors.h"
 #include "core/check/motion_look.h"
+#include "core/check/statement_findings.h"
+#include "core/result/estimate.h"
 #include "core/result/image_record.h"
+#include "core/result/uphill.h"
 
 namespace glidelab::diagnose {
 
@@ -18,6 +23,36 @@ bool is_of_units(const core::Found& found) {
   return std::holds_alternative<core::found::LongRun>(found) ||
          std::holds_alternative<core::found::SlowFrames>(found) ||
          std::holds_alternative<core::found::FallAboveGravity>(found);
+}
+
+std::string file_of(const core::ClipSetup& setup) {
+  return (setup.track.empty() ? setup.file : setup.track).string();
+}
+
+/// What is stated of the direction of a motion, and is wrong for certain: the launch of a clip, and which way x rises.
+void add_contradictions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                        std::vector<base::Issue>& issues) {
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    if (!core::moves_against_launch(clip.against_launch)) continue;
+    issues.push_back({file_of(setups[c]), 0, fmt::format("clip \"{}\"", clip.name),
+                      fmt::format("motion opposite to launched = \"{}\", {:.0f} % of it",
+                                  core::name_of(setups[c].launched), 100.0 * clip.against_launch->share),
+                      "launched of this clip and downhill of its track that agree with the motion; if they are right, "
+                      "state in start_s when the hand lets go"});
+  }
+  for (const core::ConfigurationResult& of : results.configurations) {
+    if (of.incline_assumed || of.clips.empty()) continue;
+    const auto off = core::incline_contradiction(of, results.gravity_m_s2, core::stated_incline(of));
+    if (!off || !core::seems_uphill(*off)) continue;
+    const auto setup = std::ranges::find(setups, of.clips.front(), &core::ClipSetup::name);
+    issues.push_back({setup != setups.end() ? file_of(*setup) : "", 0, fmt::format("clip \"{}\"", of.clips.front()),
+                      fmt::format("x that seems to be positive uphill: the motion gives an inclination of {:.2f}°, and "
+                                  "{:.2f}° is stated",
+                                  off->deg, off->stated.deg),
+                      "x that rises downhill: state downhill = \"-X\" in experiment.toml, or the inclination with the "
+                      "other sign"});
+  }
 }
 
 }  // namespace
@@ -43,11 +78,11 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
       const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
       if (fault == nullptr || finding.severity != core::Severity::unusable) continue;
       core::found::FaultWords words = core::found::fault_words(*fault);
-      issues.push_back({(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
-                        fmt::format("clip \"{}\"", clip.name), std::move(words.found),
+      issues.push_back({file_of(setups[c]), 0, fmt::format("clip \"{}\"", clip.name), std::move(words.found),
                         fmt::format("the motion of a body along a straight incline ({})", words.advice)});
     }
   }
+  add_contradictions(results, setups, issues);
   if (!issues.empty()) throw base::InputError(std::move(issues));
   for (const core::ConfigurationResult& configuration : results.configurations) {
     const std::optional<core::SlowFall> fall = core::slow_fall(configuration, results.gravity_m_s2);

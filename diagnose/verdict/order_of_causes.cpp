@@ -50,4 +50,11 @@ void order_by_share(bool drag_first, Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
+bool names_all(const Diagnosis& diagnosis, const std::vector<std::size_t>& effects) {
+  return std::ranges::all_of(effects, [&](std::size_t e) {
+    return std::ranges::any_of(diagnosis.effects,
+                               [&](const DiagnosedEffect& one) { return one.id == effect_list()[e].id; });
+  });
+}
+
 }  // namespace glidelab::diagnose

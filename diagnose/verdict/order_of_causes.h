@@ -22,4 +22,7 @@ GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& 
 /// has no share, and comes first if it is likelier than any that has one.
 void order_by_share(bool drag_first, Diagnosis& diagnosis);
 
+/// Whether the diagnosis names all of these effects.
+bool names_all(const Diagnosis& diagnosis, const std::vector<std::size_t>& effects);
+
 }  // namespace glidelab::diagnose

@@ -288,6 +288,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   }
+  if (diagnosis.verdict == Verdict::effect && best != nullptr && shows_in_images_alone(*best) &&
+      !diagnosis.limits.driving.empty()) {  // what images show beside it explains no negative friction
+    diagnosis.unknown = std::max(diagnosis.unknown, kUnknownIfLess);
+    diagnosis.verdict = Verdict::unknown;
+  }
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     const MotionFit* sized = noise_alone != nullptr ? &noise_alone->sized
@@ -357,7 +362,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   const MotionFit& gap_nominal = noise_alone != nullptr ? noise_alone->nominal : nominal;
   if (noise_alone != nullptr) gap_fit = diagnosis.verdict == Verdict::effect ? &noise_alone->best : &gap_nominal;
   diagnosis.gap = gap_of(gap_set, gap_nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
-  if (fit != &nominal) diagnosis.limits = limits_of(noise_alone != nullptr ? noise_alone->sized_set : set, *fit);
+  if (fit != &nominal) {
+    std::vector<ContradictedIncline> without = std::move(diagnosis.limits.contradicted);
+    diagnosis.limits = limits_of(noise_alone != nullptr ? noise_alone->sized_set : set, *fit);
+    if (diagnosis.limits.contradicted.empty()) diagnosis.limits.resolved = std::move(without);
+  }
   for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
   for (const ContradictedIncline& one : diagnosis.limits.contradicted) diagnosis.notes.emplace_back(one);
   if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);

@@ -94,7 +94,7 @@ namespace {
 // and beside named causes, whose sizes may be off by their shapes.
 constexpr double kLeastNegativeSds = 3.0, kLeastNegativeBesideSds = 5.0;
 constexpr double kLeastPullSds = 5.0;     // standard deviations between a statement and everything else
-constexpr double kLeastPartToTell = 0.2;  // of the motion: from here on the reader must be told that it is set aside
+constexpr double kLeastPartToTell = 0.1;  // of the motion: from here on the reader must be told that it is set aside
 
 std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
   std::vector<ContradictedIncline> found;
@@ -160,7 +160,7 @@ std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit) {
 }
 
 VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
-  return {what_drives(fit), contradicted_statements(set, fit), set_aside(set)};
+  return {what_drives(fit), contradicted_statements(set, fit), {}, set_aside(set)};
 }
 
 namespace {

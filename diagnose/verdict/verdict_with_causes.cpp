@@ -149,6 +149,10 @@ class VerdictWithCauses {
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
   double least_unknown() const;
+  /// Whether the verdict is `best_`: without a gap a part of it may be a trace.
+  bool names_best(const Diagnosis& diagnosis) const {
+    return diagnosis.verdict == Verdict::effect && (sequence_.is_gap || names_all(diagnosis, best_.effects));
+  }
   void name_by_stated();
   void doubt_by_share(bool in_images);
   void move_imperfections_to_none();
@@ -314,8 +318,11 @@ bool VerdictWithCauses::viscous_leaves_less() const {
       .viscous_leaves_less();
 }
 
-/// The probability of an unknown cause, by the sizes of what is named.
+/// The least probability of an unknown cause, by the sizes of what is named, and by a fit of it that stopped before its
+/// minimum and follows the motion badly.
 double VerdictWithCauses::least_unknown() const {
+  const bool cut_off = is_settled() && !sized_.fit.converged && sequence_.gap_after > kFollowed;
+  if (cut_off) return kUnknownIfLess;
   return impossible_ || !empty_.empty() || may_take_nothing(sequence_) ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
@@ -421,7 +428,7 @@ Reported VerdictWithCauses::reported_by(const Diagnosis& diagnosis) const {
   // Where causes are named whatever part of the gap they take, all of them are in the fit of the explanation itself.
   const MotionFit& with_effect =
       sequence_.is_gap && (is_settled() || by_air_ || resized_) ? sequence_.named : fit_of(best_);
-  const MotionFit& fit = diagnosis.verdict == Verdict::effect ? with_effect : nominal();
+  const MotionFit& fit = names_best(diagnosis) ? with_effect : nominal();
   const RemainderSpace space(set_, fit);
   const bool is_sized = is_settled() && &fit == &fit_of_gap();
   return {fit, is_sized ? sized_.remainder : space.likeliest().sizes, space.part_s()};
@@ -463,7 +470,7 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
 }
 
 void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagnosis) const {
-  const bool with_names = diagnosis.verdict == Verdict::effect;
+  const bool with_names = names_best(diagnosis);
   const MovedOn settled = moved_on(with_names && by_air_ ? gap_set_ : set_, reported.fit, best_.converged || !names_);
   Explanations explanations{{&settled.fit, reported.sizes, 1.0}};
   if (weighed_) {

@@ -143,7 +143,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
     note_fit(*fit, options, configuration);
   }
   core::add_steady_falls(results.clips, results.gravity_m_s2, results.configurations);
-  core::note_statements(results.configurations, results.gravity_m_s2);
+  core::note_statements(results.configurations, results.clips, results.gravity_m_s2);
   core::note_gravity(results);
   return results;
 }

@@ -7,6 +7,8 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
+constexpr double kMostShaking_m_s2 = 4.0;  // 0.4 g: no table that holds a track shakes more
+
 // A step is 0.3 of the inverse rate, but it may cover 0.9 rad of the wave: Simpson's rule errs by (omega h)^4/2880 of
 // it.
 constexpr double kTurnOfWave = 0.3 / 0.9;
@@ -43,7 +45,7 @@ EffectInfo base_vibration() {
       .point_scatter = {},
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
-      .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
+      .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = kMostShaking_m_s2, .step = 1e-5},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},
       .law = {.force_n = vibration_force, .rate_1_s = vibration_rate, .passing = true},

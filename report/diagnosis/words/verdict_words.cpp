@@ -226,6 +226,8 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
   std::string text = clip_verdict(diagnosis);
   if (diagnosis.verdict == diagnose::Verdict::none) {
     if (!limits.contradicted.empty()) text = sentences(limits.contradicted) + " " + text;
+  } else if (is_at_floor(diagnosis) && !limits.resolved.empty()) {
+    text = sentences(limits.resolved) + " If that statement is wrong, nothing else need be missing. " + text;
   } else if (!only_statements_fail(diagnosis)) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
     if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);

@@ -163,10 +163,10 @@ TEST_CASE("an inclination stated with its uncertainty is contradicted by three s
   result.incline_deg = 5.0;
   result.alpha_deg = core::determined({5.2, 0.004, 5.192, 5.208});
   std::vector<core::ConfigurationResult> results{result};
-  core::note_statements(results, tests::kGravity);
+  core::note_statements(results, {}, tests::kGravity);
   CHECK(results[0].notes.empty());
   results[0].incline_sd_deg = 0.02;
-  core::note_statements(results, tests::kGravity);
+  core::note_statements(results, {}, tests::kGravity);
   REQUIRE(results[0].notes.size() == 1);
   CHECK(std::holds_alternative<core::InclineContradiction>(results[0].notes[0]));
 }
@@ -255,4 +255,31 @@ TEST_CASE("a fall in slow motion is found by the acceleration with which it begi
     REQUIRE((slow != nullptr) == (slower > 1.0));
     if (slow != nullptr) CHECK(slow->fall.a0_m_s2.value == Approx(tests::kGravity / 16.0).epsilon(0.05));
   }
+}
+
+TEST_CASE("a large mass looks like grams unless what moves runs as far as a sledge or a car") {
+  core::ConfigurationResult result;
+  result.mass_kg = 80.0;
+  result.incline_assumed = true;
+  const auto notes_at = [&](const core::ClipResult& clip) {
+    std::vector<core::ConfigurationResult> results{result};
+    core::note_statements(results, {clip}, tests::kGravity);
+    return results[0].notes.size();
+  };
+  core::ClipResult of_positions, of_speeds;
+  of_speeds.speed_noise_m_s = 0.1;
+  for (int i = 0; i <= 10; ++i) {
+    core::MotionPoint point;
+    point.t_s = i;
+    point.v_m_s = 3.0;
+    of_speeds.motion.push_back(point);
+    point.measured_m = 3.0 * i;
+    of_positions.motion.push_back(point);
+  }
+  CHECK(notes_at(of_positions) == 0);  // 30 m
+  CHECK(notes_at(of_speeds) == 0);
+  of_positions.motion.resize(6);  // 15 m
+  of_speeds.motion.resize(6);
+  CHECK(notes_at(of_positions) == 1);
+  CHECK(notes_at(of_speeds) == 1);
 }

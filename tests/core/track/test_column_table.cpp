@@ -121,3 +121,9 @@ TEST_CASE("brackets around digits belong to a name, and a column is found by it 
   CHECK(columns[2].unit == "m");
   CHECK(columns[3].name == "z");
 }
+
+TEST_CASE("times before anything is seen are no header") {
+  std::string text;
+  for (int i = 0; i < 4; ++i) text += fmt::format("{:.3f},NaN\n", 0.05 * i - 0.2);
+  check_motion(read_text(text + rows("", [](int) { return ""; })));
+}

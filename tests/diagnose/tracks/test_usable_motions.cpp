@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "base/errors.h"
+#include "core/result/estimate.h"
 #include "core/result/image_record.h"
 #include "tests/catch.h"
 
@@ -94,4 +95,47 @@ TEST_CASE("a diagnosis says that a stated fall begins far below gravity, as the 
 
 TEST_CASE("a motion that no incline gives is refused, with its clip") {
   CHECK_THROWS_AS(doubts_of([](double t) { return 0.1 * std::sin(30.0 * t); }), base::InputError);
+}
+
+namespace {
+
+core::AnalysisResults with_clip(const core::ClipResult& clip) {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = 9.81;
+  results.clips = {clip};
+  return results;
+}
+
+}  // namespace
+
+TEST_CASE("a diagnosis refuses a motion opposite to its stated launch, as the check does") {
+  core::ClipSetup setup;
+  setup.name = "up";
+  setup.track = "up.csv";
+  setup.launched = core::Launched::up;
+  core::ClipResult clip;
+  clip.name = "up";
+  clip.against_launch = core::AgainstLaunch{1, {}, 0.6, false};
+  CHECK_THROWS_WITH(diagnose::doubtful_units(with_clip(clip), {setup}),
+                    Contains("clip \"up\"") && Contains("opposite to launched = \"up\", 60 %") && Contains("downhill"));
+  clip.against_launch->share = 0.1;  // the hand
+  CHECK(diagnose::doubtful_units(with_clip(clip), {setup}).empty());
+}
+
+TEST_CASE("a diagnosis refuses positions that rise uphill, and no other contradiction") {
+  core::ClipSetup setup;
+  setup.name = "run";
+  setup.track = "run.csv";
+  core::ClipResult clip;
+  clip.name = "run";
+  core::AnalysisResults results = with_clip(clip);
+  core::ConfigurationResult configuration;
+  configuration.incline_deg = 4.0;
+  configuration.clips = {"run"};
+  configuration.alpha_deg = core::determined(core::estimate(-4.01, 0.015, 100.0));
+  results.configurations = {configuration};
+  CHECK_THROWS_WITH(diagnose::doubtful_units(results, {setup}),
+                    Contains("run.csv") && Contains("positive uphill") && Contains("-4.01°, and 4.00° is stated"));
+  results.configurations[0].alpha_deg = core::determined(core::estimate(2.7, 0.015, 100.0));
+  CHECK(diagnose::doubtful_units(results, {setup}).empty());
 }
