@@ -212,9 +212,13 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     const Interruption& first = clip.interruptions.front();
     book.add(Severity::change, found::Interrupted{first.from_s, first.to_s, clip.interruptions.size()});
   }
+  const bool inclined = std::any_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& setup) {
+    return setup.name == clip.name && !setup.incline_assumed;
+  });
   for (const Note& note : clip.notes) {
     const bool reported =
         std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
+        (inclined && std::holds_alternative<HeightTaken>(note)) ||                  // asks whether it falls
         (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice
     if (!reported) book.add(Severity::note, note);
   }

@@ -227,7 +227,8 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::none) {
     if (!limits.contradicted.empty()) text = sentences(limits.contradicted) + " " + text;
   } else if (is_at_floor(diagnosis) && !limits.resolved.empty()) {
-    text = sentences(limits.resolved) + " If that statement is wrong, nothing else need be missing. " + text;
+    text = sentences(limits.resolved) + " If that statement is wrong, a cause named below may only make up for it. " +
+           text;
   } else if (!only_statements_fail(diagnosis)) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
     if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <variant>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -151,9 +153,18 @@ TEST_CASE("beside an assumed level track an analysis says that x is a height, wh
     const auto* const height = tests::note_of<core::HeightTaken>(notes);
     return height != nullptr && height->column == "hauteur (m)";
   };
+  const auto is_asked_by_check = [&] {
+    const core::RecordingCheck check = core::check_recording(core::read_tracks(file, how.bare), 1);
+    return std::ranges::any_of(check.findings, [](const core::Finding& finding) {
+      const auto* const note = std::get_if<core::Note>(&finding.found);
+      return note != nullptr && std::holds_alternative<core::HeightTaken>(*note);
+    });
+  };
   CHECK(is_told());
+  CHECK(is_asked_by_check());
   how.bare.incline_deg = 90.0;
   CHECK_FALSE(is_told());
+  CHECK_FALSE(is_asked_by_check());
 }
 
 TEST_CASE("a check of a recording whose frames are hardly marked does not ask for a higher rate") {

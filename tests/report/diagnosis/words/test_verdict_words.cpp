@@ -1,6 +1,7 @@
 #include "report/diagnosis/words/verdict_words.h"
 
 #include <numbers>
+#include <utility>
 
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "tests/catch.h"
@@ -130,6 +131,18 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   CHECK(contains(off, "as stated, and the motion gives 4.00° by the nominal model, which leaves out what is missing."));
 }
 
+TEST_CASE("a contradicted statement heads names that resolve it, where the nominal model follows the motion") {
+  diagnose::Diagnosis of = with_incline(1.02);
+  of.verdict = diagnose::Verdict::effect;
+  of.unknown = 0.0;
+  of.limits.resolved = std::exchange(of.limits.contradicted, {});
+  of.effects = {{"rotational_inertia", diagnose::Stage::dynamics, "added inertia", 0.94, {}, {}, 0.94, {}}};
+  CHECK(report::verdict_words(of).starts_with("The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated"));
+  CHECK(contains(report::verdict_words(of), "may only make up for it. The data show added inertia"));
+  of.gap->before = 5.0;  // the names explain a gap
+  CHECK(report::verdict_words(of).starts_with("The data show added inertia"));
+}
+
 TEST_CASE("an angle of the nominal model has no standard deviation where something is missing, in notes neither") {
   diagnose::Diagnosis of = with_incline(5.0);
   of.limits.contradicted.push_back(of.limits.contradicted.front());
@@ -152,7 +165,7 @@ TEST_CASE("a drag or friction below zero is told before the verdict that rests o
   CHECK(report::verdict_words(of).starts_with("The fitted friction is below zero (-0.01140 ± 0.00030)"));
 }
 
-TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
+TEST_CASE("where much of the motion is set aside, the summary begins with it") {
   diagnose::Diagnosis of;
   of.none = 0.9;
   of.limits.set_aside = diagnose::SetAside{1000, 0.21};
