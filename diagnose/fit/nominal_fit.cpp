@@ -38,6 +38,22 @@ Eigen::VectorXd start_of(const TrackedMotion& motion) {
   return fit.head(2);
 }
 
+/// Downwards, over all motions.
+double mean_speed(const TrackSet& set) {
+  double distance_m = 0.0, time_s = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    distance_m += motion.x_m.back() - motion.x_m.front();
+    time_s += motion.t_s.back() - motion.t_s.front();
+  }
+  return distance_m / time_s;
+}
+
+/// Whether what drives the falls, up to their weight, is fitted.
+bool is_weight_open(const TrackSet& set) {
+  constexpr double kOpen = 0.5;  // of gravity, its standard deviation
+  return only_falls(set) && set.gravity_sd_m_s2 > kOpen * set.gravity_m_s2 && mean_speed(set) > 0.0;
+}
+
 }  // namespace
 
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
@@ -72,6 +88,8 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
       if (fit_if_better(from_statements(k_over_m))) break;
     }
   }
+  // A body that sinks at one speed may be borne by a liquid, or by a drag that stops it within a few positions.
+  if (is_weight_open(set)) fit_if_better(from_statements(set.gravity_m_s2 / mean_speed(set)));
   for (int more = 0; more < kMoreRounds && std::isfinite(best.cost) && !best.converged; ++more) {
     best = fit_motions(set, {}, best.at, late);
   }

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "core/motion/steady_fall.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
@@ -201,10 +200,9 @@ void note_loss(const ImageEvidence& images, TrackSet& set) {
 
 /// Leaves open what part of its weight drives a body, from 0 to four times gravity at a standard deviation of gravity
 /// itself, where all falls begin far too slowly (core::slow_fall()) and none is too fast for a viscous drag, as in a
-/// liquid. Falls at a constant speed alone tell no weight from a drag: theirs is taken as whole. Whether it is open.
+/// liquid. Whether it is open.
 bool open_weight(const core::AnalysisResults& results, TrackSet& set) {
-  const bool steady = std::ranges::all_of(results.configurations, core::is_steady_fall);
-  const bool slow = !steady && !set.through_air &&
+  const bool slow = !results.configurations.empty() && !set.through_air &&
                     std::ranges::all_of(results.configurations, [&](const core::ConfigurationResult& configuration) {
                       return core::slow_fall(configuration, results.gravity_m_s2).has_value();
                     });

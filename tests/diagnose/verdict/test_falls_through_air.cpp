@@ -420,7 +420,7 @@ TEST_CASE("a drag of no certain size is not named beside a wrong scale or clock"
 }
 
 TEST_CASE(
-    "a magnet that sinks through a tube at one speed has the drag that bears its weight, and nothing is missing") {
+    "a magnet that sinks through a tube at one speed has the drag that stops it at first, and nothing is missing") {
   Fall fall;
   fall.masses_kg = {0.012, 0.014, 0.016};
   fall.k_n_s_m = 0.012 * fall.gravity_m_s2 / 0.142;  // 0.142 m/s of the lightest, within 15 ms
@@ -428,7 +428,7 @@ TEST_CASE(
   fall.rate_hz = 240.0;
   fall.frames = 300;
   tests::MadeExperiment made = fallen(fall, 29);
-  // As the analysis of such falls has it: no line with a slope, and a note of the constant speed.
+  // As the analysis of such falls has it: no line with a slope.
   core::LineFit line;
   line.direction = 1;
   line.a0_m_s2 = core::estimate(-0.03, 0.02, 100.0);
@@ -436,12 +436,6 @@ TEST_CASE(
   falls.incline_deg = 90.0;
   falls.lines = {line};
   made.results.configurations = {falls};
-  // A liquid may bear a part of the weight of what sinks so slowly; then only the terminal velocity is known.
-  for (const diagnose::RecoveredConfiguration& one : diagnosed(made).recovered) {
-    const auto& k = one.k_over_m_1_s.estimate;
-    CHECK((!k || k->sd > 0.1 * std::abs(k->value)));
-  }
-  made.results.configurations.front().notes.emplace_back(core::SteadyFall{3});
   const diagnose::Diagnosis diagnosis = diagnosed(made);
   CAPTURE(names(diagnosis));
   CHECK(diagnosis.verdict == diagnose::Verdict::none);
@@ -450,7 +444,9 @@ TEST_CASE(
     CAPTURE(one.mass_kg);
     const double rate = fall.k_n_s_m / one.mass_kg;
     REQUIRE((one.k_over_m_1_s.estimate && one.v_lim_m_s.estimate));
-    CHECK(one.k_over_m_1_s.estimate->value == Approx(rate).epsilon(0.01));
+    const core::Estimate& k = *one.k_over_m_1_s.estimate;  // by the first 15 ms: a liquid may bear part of the weight
+    CHECK(std::abs(k.value - rate) < 3.0 * k.sd);
+    CHECK(k.sd < 0.3 * rate);
     CHECK(one.v_lim_m_s.estimate->value == Approx(fall.gravity_m_s2 / rate).epsilon(0.01));
   }
 }
