@@ -303,7 +303,7 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   std::vector<PlotData> data = {errors, best};
   std::string script =
       std::string(kFrame) +
-      "set key at screen 0.5, screen 0.99 center top font ',11' maxcols 2 samplen 1.6\n"
+      "set key at screen 0.5, screen 0.99 center top font ',11' vertical maxrows 4 width -2 samplen 1.6\n"
       "set tmargin at screen 0.76\nset logscale xy\nset offsets 0,0,0,0\n"
       "set xlabel 'bandwidth h (s)'\n" +
       fmt::format("set ylabel {}\nset xrange [{:.6g}:{:.6g}]\n",
@@ -333,9 +333,8 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   }
   if (bound > 0.0) {
     data.push_back(level("bound", bound, from, to));
-    drawn += fmt::format(
-        ", $bound using 1:2 with lines lw 1.2 dt 4 lc rgb '{}' title 'limit of one configuration (Cramér-Rao)'",
-        color(6));
+    drawn += fmt::format(", $bound using 1:2 with lines lw 1.2 dt 4 lc rgb '{}' title 'limit of one configuration'",
+                         color(6));
   }
   script += error_range(data);
   if (!choice.rows.empty()) data.push_back(choice);

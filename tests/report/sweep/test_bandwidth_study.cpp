@@ -83,7 +83,7 @@ TEST_CASE("the plot of a bandwidth study has bias, noise and total, and the choi
   REQUIRE(plots.size() == 1);
   const report::Drawing& drawing = plots.front().drawing;
   for (const char* title : {"'total'", "'noise'", "'bias'", "'stated sd'", "'best h'", "'default rule'",
-                            "'fit of the whole motion'", "'limit of one configuration (Cramér-Rao)'"}) {
+                            "'fit of the whole motion'", "'limit of one configuration'"}) {
     CHECK_THAT(drawing.script, Contains(title));
   }
   const std::vector<double>& at = drawing.data.front().rows[3];  // h = 0.04 s
