@@ -186,26 +186,34 @@ std::map<std::string, validate::EverydayAnswers> all_answers(const EverydayScore
 const std::vector<std::string> kAnswersHeader = {
     "quantity", "class", "answers", "rms error", "95 % intervals that hold", "those of the diagnosis"};
 
+/// "86 % (43 of 50)"; a dash if there are none.
+std::string share_alone(const BlindShare& share) {
+  return share.of == 0 ? "–" : fmt::format("{:.0f} % ({} of {})", 100.0 * share.share(), share.yes, share.of);
+}
+
+using ShareText = std::string (*)(const BlindShare&);
+
 /// A row for a quantity of some class: what the estimator answered, beside what the diagnosis recovered.
 std::vector<std::string> answers_row(const std::string& key, const std::string& kind,
-                                     const validate::EverydayAnswers& of, const BlindShare& of_diagnosis) {
+                                     const validate::EverydayAnswers& of, const BlindShare& of_diagnosis,
+                                     ShareText text_of) {
   const std::string unit = core::unit_of(key);
   return {
       core::symbol_of(key),
       kind,
       fmt::format("{} of {}", of.answered.yes, of.answered.of),
       of.error.of == 0 ? "–" : base::number_text(of.error.rms(), 2) + (unit.empty() || unit == "°" ? "" : " ") + unit,
-      share_and_interval(of.covered),
-      share_and_interval(of_diagnosis)};
+      text_of(of.covered),
+      text_of(of_diagnosis)};
 }
 
-TextRows all_answers_rows(const EverydayScore& score) {
+TextRows all_answers_rows(const EverydayScore& score, ShareText text_of) {
   const auto all = all_answers(score);
   TextRows rows;
   for (const core::QuantityName& quantity : core::kQuantities) {
     const std::string key(quantity.key);
     if (const auto of = all.find(key); of != all.end()) {
-      rows.push_back(answers_row(key, words_of_class("all"), of->second, covered_of(score, "", key)));
+      rows.push_back(answers_row(key, words_of_class("all"), of->second, covered_of(score, "", key), text_of));
     }
   }
   return rows;
@@ -218,7 +226,8 @@ TextRows answers_rows_by_class(const EverydayScore& score) {
       const std::string key(quantity.key);
       const auto of = by_quantity.find(key);
       if (of == by_quantity.end()) continue;
-      rows.push_back(answers_row(key, words_of_class(kind), of->second, covered_of(score, kind, key)));
+      rows.push_back(
+          answers_row(key, words_of_class(kind), of->second, covered_of(score, kind, key), share_and_interval));
     }
   }
   return rows;
@@ -409,9 +418,12 @@ std::string everyday_text(const BlindRun& run) {
   std::string text = everyday_answer(score) + "\n\n" + text_table(rows, 1);
   if (!run.outside) return text;
   if (const std::string failed = outside_failed(*run.outside); !failed.empty()) text = failed + " " + text;
-  TextRows answers = {kAnswersHeader};
-  for (const auto& row : all_answers_rows(score)) answers.push_back(row);
-  return text + "\n" + outside_text(*run.outside) + "\n\n" + text_table(answers, 2);
+  TextRows answers = {{"quantity", "answers", "rms error", "95 % intervals that hold", "of the diagnosis"}};
+  for (auto row : all_answers_rows(score, share_alone)) {
+    row.erase(row.begin() + 1);  // the class: all
+    answers.push_back(std::move(row));
+  }
+  return text + "\n" + outside_text(*run.outside) + "\n\n" + text_table(answers, 1);
 }
 
 Page everyday_page(const BlindRun& run) {
@@ -434,7 +446,7 @@ Page everyday_page(const BlindRun& run) {
   if (run.outside) {
     HtmlTable answers(kAnswersHeader, 6);
     answers.stack_when_narrow(1);
-    for (const TextRows& rows : {all_answers_rows(score), answers_rows_by_class(score)}) {
+    for (const TextRows& rows : {all_answers_rows(score, share_and_interval), answers_rows_by_class(score)}) {
       for (const auto& row : rows) {
         answers.row({escape(row[0]), escape(row[1]), escape(row[2]), escape(row[3]), escape(row[4]), escape(row[5])});
       }

@@ -34,10 +34,9 @@ void check(const BlindOptions& options) {
                                        "everyday cases are tracks, diagnosed once"});
   }
   if (options.outside && !options.everyday) {
-    throw base::InputError(
-        base::Issue{"", 0, "--estimator-command", "no --everyday",
-                    "that as well: only of everyday cases the true K/m, mu and alpha are stated, and "
-                    "an estimator names no cause"});
+    throw base::InputError(base::Issue{"", 0, "--estimator-command", "an estimator without --everyday",
+                                       "--everyday as well: only everyday cases state true values of K/m, mu and "
+                                       "alpha, and an estimator names no cause"});
   }
   if (options.only.empty()) return;
   std::string known;
