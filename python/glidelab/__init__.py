@@ -28,8 +28,7 @@ from ._gate import Gate, GateRow, Worse, gate
 from ._inputs import Track, load_scenario, scenarios_folder
 from ._outside import OutsideFailures, OutsideRuns
 from ._recording import Finding, RecordingCheck, check
-from ._recovered import Recovered, WithEffects
-from ._results import Quantity, Result
+from ._results import Quantity, Recovered, Result, WithEffects
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
 from ._sources import Film
 from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,

@@ -17,8 +17,8 @@
 #include "validate/blind/run_blind.h"
 
 using namespace glidelab;
-using validate::BlindOutcome;
 using Catch::Matchers::Contains;
+using validate::BlindOutcome;
 using validate::EverydayClass;
 
 namespace {
