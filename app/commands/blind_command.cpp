@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct BlindCommand {
   CommonOptions common;
   validate::BlindOptions blind;
+  OutsideOptions outside;
 };
 
 /// Starts this program's own executable again: that process knows the folder and nothing else.
@@ -48,6 +49,7 @@ std::string render_apart(const fs::path& scenario, const fs::path& folder) {
 }
 
 void blind(const BlindCommand& options) {
+  const std::optional<fit::OutsideEstimator> outside = options.outside.estimator();
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "blind", "cases");
   check_writable(out);
@@ -55,6 +57,7 @@ void blind(const BlindCommand& options) {
   validate::BlindOptions wanted = options.blind;
   wanted.seed = options.common.seed.value_or(1);
   wanted.jobs = options.common.jobs;
+  wanted.outside = outside;
   report::BlindRun run;
   run.seed = wanted.seed;
   run.images = wanted.images;
@@ -64,6 +67,7 @@ void blind(const BlindCommand& options) {
         return fmt::format("{} of {} cases are kept in {}; the same command continues with the rest",
                            validate::kept_cases(wanted, out), wanted.cases, out.string());
       });
+  if (outside) run.outside = validate::tally_of(*outside, run.outcomes);
   if (wanted.everyday) {
     run.everyday = validate::score_everyday(run.outcomes);
   } else {
@@ -107,6 +111,8 @@ void add_blind(CLI::App& app, Command& chosen) {
           "to five small imperfections")
       ->excludes(images)
       ->excludes(leave_out);
+  add_outside_options(*command, options->outside,
+                      "With --everyday: also have an estimator of your own answer the same cases");
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
   command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });
 }

@@ -7,12 +7,14 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/errors.h"
 #include "base/files/child_process.h"
 #include "base/files/file_io.h"
 #include "python/binding/bindings.h"
+#include "python/binding/given_estimator.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/blind/blind_report.h"
@@ -42,8 +44,8 @@ std::string apart(std::vector<std::string> words, const std::vector<std::string>
 
 /// `python` is the interpreter with its own arguments.
 Outcome run_blind(const std::vector<std::string>& python, const std::string& folder, std::size_t cases,
-                  std::uint64_t seed, const std::string& only, bool everyday, bool pictures, bool leave_out, int jobs,
-                  const py::object& told) {
+                  std::uint64_t seed, const std::string& only, bool everyday, bool pictures, bool leave_out,
+                  const std::optional<GivenEstimator>& judged, int jobs, const py::object& told) {
   WatchedWork watched(told);
   const auto run = watched.run([&](const base::Progress& progress) {
     validate::BlindOptions wanted;
@@ -54,6 +56,7 @@ Outcome run_blind(const std::vector<std::string>& python, const std::string& fol
     wanted.images = pictures;
     wanted.leave_out = leave_out;
     wanted.jobs = jobs;
+    wanted.outside = outside_of(judged, watched);
     auto made = std::make_shared<report::BlindRun>();
     made->seed = seed;
     made->images = pictures;
@@ -68,6 +71,7 @@ Outcome run_blind(const std::vector<std::string>& python, const std::string& fol
         [&](const fs::path& scenario, const fs::path& out) {
           return apart(python, {"render", scenario.string(), out.string()}, out.parent_path() / "log.txt", watched);
         });
+    if (wanted.outside) made->outside = validate::tally_of(*wanted.outside, made->outcomes);
     if (everyday) {
       made->everyday = validate::score_everyday(made->outcomes);
     } else {

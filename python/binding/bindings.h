@@ -19,6 +19,7 @@ void bind_diagnosis(pybind11::module_& module);
 void bind_recording(pybind11::module_& module);
 void bind_smoothing(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);
+void bind_gate(pybind11::module_& module);
 void bind_blind(pybind11::module_& module);
 void bind_film(pybind11::module_& module);
 void bind_camera(pybind11::module_& module);

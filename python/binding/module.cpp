@@ -20,6 +20,7 @@ PYBIND11_MODULE(_glidelab, module) {
   bind_recording(module);
   bind_smoothing(module);
   bind_studies(module);
+  bind_gate(module);
   bind_blind(module);
   bind_film(module);
   bind_camera(module);

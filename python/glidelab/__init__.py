@@ -5,8 +5,8 @@
 >>> glidelab.diagnose("my-recording")              # an experiment folder # doctest: +SKIP
 
 Arguments and results are in SI units, with the unit in the name; angles are in degrees. Every `Result` has ``to_dict()``
-(the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). `Judgement`, `Smoothed` and
-`Bandwidth` are of no command: they write their data as JSON, their table as CSV, and a page. All show themselves in a
+(the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). `Judgement`, `Gate`, `Smoothed`
+and `Bandwidth` are of no command: they write their data as JSON, their table as CSV, and a page. All show themselves in a
 notebook and on one line at a prompt, and `explain` puts them in words. docs/guide/python.md is the tutorial.
 """
 
@@ -17,18 +17,18 @@ import numpy as _numpy
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
 from ._checks import refuse_numpy as _refuse_numpy
-from ._blind import Blind, BlindCase, BlindTarget, blind
+from ._blind import Blind, BlindAnswers, BlindCase, BlindTarget, blind
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
 from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Residuals, diagnose, plan
 from ._estimator import estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
 from ._film import FilmedClip, Frame, Rendered, render, render_folder
+from ._gate import Gate, GateRow, Worse, gate
 from ._inputs import Track, load_scenario, scenarios_folder
 from ._outside import OutsideFailures, OutsideRuns
 from ._recording import Finding, RecordingCheck, check
-from ._recovered import Recovered, WithEffects
-from ._results import Quantity, Result
+from ._results import Quantity, Recovered, Result, WithEffects
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
 from ._sources import Film
 from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,
@@ -50,12 +50,12 @@ class Explanation(str):
         printer.text(str(self))
 
 
-def explain(result: _Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanation:
+def explain(result: _Union[Result, Judgement, Gate, Smoothed, Bandwidth]) -> Explanation:
     """A result in words: of a command what it prints, the answer in sentences and its tables.
 
     Parameters
     ----------
-    result : Result, Judgement, Smoothed or Bandwidth
+    result : Result, Judgement, Gate, Smoothed or Bandwidth
         Of any function that returns one: `analyze`, `diagnose`, `validate`, `judge`, `smooth`, ...
 
     Returns
@@ -67,14 +67,14 @@ def explain(result: _Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanati
 
 
 __all__ = [
-    "Analysis", "Bandwidth", "BandwidthRule", "Blind", "BlindCase", "BlindTarget", "Camera", "Candidate", "Cause",
-    "Certificate", "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage",
-    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "Film", "FilmedClip", "Finding", "Frame", "InputError",
-    "Issue", "Judged", "Judgement", "Line", "Marker", "ModeChange", "Motion", "NotMet", "NumericalError",
+    "Analysis", "Bandwidth", "BandwidthRule", "Blind", "BlindAnswers", "BlindCase", "BlindTarget", "Camera", "Candidate",
+    "Cause", "Certificate", "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage",
+    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "Film", "FilmedClip", "Finding", "Frame", "Gate", "GateRow",
+    "InputError", "Issue", "Judged", "Judgement", "Line", "Marker", "ModeChange", "Motion", "NotMet", "NumericalError",
     "OutsideFailures", "OutsideRuns", "Plan", "PlannedEffect", "Quantity", "RecordingCheck", "Recovered",
     "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip", "Simulation", "Smoothed",
-    "Strength", "Sweep", "SystemFailure", "Track", "Validation", "WithEffects", "analyze", "bandwidth_rules",
+    "Strength", "Sweep", "SystemFailure", "Track", "Validation", "WithEffects", "Worse", "analyze", "bandwidth_rules",
     "blind", "calibrate", "certify", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain",
-    "fit_marker", "judge", "load_scenario", "plan", "position_noise", "render", "render_folder", "require",
+    "fit_marker", "gate", "judge", "load_scenario", "plan", "position_noise", "render", "render_folder", "require",
     "scenarios_folder", "simulate", "smooth", "sweep", "validate",
 ]

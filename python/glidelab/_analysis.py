@@ -14,8 +14,7 @@ from . import _glidelab
 from ._checks import Vector, frozen, optional_real, switch, text, texts
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_gravity, given_tracks, job_count, refuse,
                       refuse_of_arrays, stated_incline, teller)
-from ._recovered import QUANTITIES, WithEffects, with_effects_of
-from ._results import Made, Quantity, Result, frame_of, quantity_of
+from ._results import QUANTITIES, Made, Quantity, Result, WithEffects, frame_of, quantity_of, with_effects_of
 from ._shown import Brief, html_plot, html_table, new_axes
 from ._sources import Film, source_of
 

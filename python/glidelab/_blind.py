@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from . import _glidelab
 from ._apart import interpreter
 from ._checks import file_name, switch, text, whole
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller
-from ._results import Made, Result, frame_of
+from ._outside import Estimator, OutsideRuns, given_command, outside_runs
+from ._results import Made, Result, frame_of, words_of
 from ._shown import html_plot, html_table, new_axes
 
 MOST_CASES = 100000
@@ -69,6 +70,36 @@ class BlindCase:
     named: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class BlindAnswers:
+    """What an estimator of one's own said of one quantity in the cases of one class.
+
+    Attributes
+    ----------
+    kind : str
+        ``"one"``, ``"two"``, ``"dirt"`` (small imperfections alone) or ``"outside"``: what was in these cases.
+    quantity : str
+        ``k_over_m_1_s``, ``mu``, ``alpha_deg`` or ``v_lim_m_s``.
+    true_values, answered, covered : int
+        Configurations with a true value, those of them with an answer, and answers whose 95 % interval contains it.
+    bias, rms_error : float or None
+        Mean and root mean square of the errors, in the quantity's unit; None without an answer.
+    """
+
+    kind: str
+    quantity: str
+    true_values: int
+    answered: int
+    covered: int
+    bias: Optional[float]
+    rms_error: Optional[float]
+
+    @property
+    def coverage(self) -> Optional[float]:
+        """The share of answers whose 95 % interval contains the true value."""
+        return self.covered / self.answered if self.answered else None
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Blind(Result):
     """How often diagnoses of withheld causes are right.
@@ -87,6 +118,10 @@ class Blind(Result):
         All of them.
     folder : str
         Where experiments, diagnoses and truths lie.
+    answers : tuple of BlindAnswers
+        Of an estimator of your own, by class and quantity; empty without one.
+    outside : OutsideRuns or None
+        How its runs went.
     """
 
     seed: int
@@ -95,6 +130,8 @@ class Blind(Result):
     calibration_error: float
     cases: tuple[BlindCase, ...]
     folder: str
+    answers: tuple[BlindAnswers, ...] = ()
+    outside: Optional[OutsideRuns] = None
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per case."""
@@ -148,7 +185,18 @@ class Blind(Result):
         return (html_table(["", "found", "wanted", ""], rows, f"{len(self.cases)} blind cases, seed {self.seed}")
                 + html_table(["put in", *(f"verdict {verdict}" for verdict in verdicts)],
                              [[kind, *map(str, of_kind)] for kind, of_kind in zip(kinds, counts)])
+                + (html_table(["put in", "quantity", "answers", "mean error", "rms error", "95 % intervals that hold"],
+                              [_answers_row(one) for one in self.answers], self.outside.name if self.outside else "")
+                   if self.answers else "")
                 + (html_plot(self.plot) if self.cases else ""))
+
+
+def _answers_row(one: BlindAnswers) -> list[str]:
+    def number(value: Optional[float]) -> str:
+        return "" if value is None else f"{value:.3g}"
+
+    return [one.kind, words_of(one.quantity), f"{one.answered} of {one.true_values}", number(one.bias), number(one.rms_error),
+            f"{one.covered} of {one.answered}"]
 
 
 def _in_order(found: set[str], order: Sequence[str]) -> list[str]:
@@ -172,12 +220,18 @@ def _target(found: Mapping[str, Any]) -> BlindTarget:
     return BlindTarget(found["what"], of, yes, value, found.get("at_least"), found.get("at_most"), found.get("met"))
 
 
-def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = False, pictures: bool = False,
-          leave_out: bool = False, seed: int = 1, jobs: Optional[int] = None, progress: Progress = None) -> Blind:
-    """Makes experiments whose cause is withheld, has another process diagnose each, and scores the diagnoses.
+def _answers(found: Mapping[str, Any]) -> tuple[BlindAnswers, ...]:
+    return tuple(
+        BlindAnswers(kind, quantity, one["answered"]["of"], one["answered"]["yes"], one["covered"]["yes"],
+                     one["error"].get("mean"), one["error"].get("rms"))
+        for kind, quantities in found.get("everyday", {}).get("answers", {}).items() for quantity, one in quantities.items())
 
-    An estimator of your own cannot be scored here, for it finds values and names no cause: `judge` and ``glidelab
-    challenge make --level everyday``, which draws from the same experiments, are for estimators.
+
+def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = False, pictures: bool = False,
+          leave_out: bool = False, estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
+          estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0, seed: int = 1,
+          jobs: Optional[int] = None, progress: Progress = None) -> Blind:
+    """Makes experiments whose cause is withheld, has another process diagnose each, and scores the diagnoses.
 
     Parameters
     ----------
@@ -194,6 +248,10 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
         Rendered clips instead of tracks.
     leave_out : bool
         Diagnose each case of one effect again with that effect taken off the list.
+    estimator_command, estimator_name, estimator_seconds, estimator_megabytes
+        As in `validate`: with ``everyday=True`` an estimator of your own answers the same cases. It finds values and names
+        no cause, so that its errors and its intervals are scored beside the values that the diagnosis recovers. It answers
+        all cases anew at each call; the diagnoses in the folder are kept.
     seed : int
         Of the cases.
     jobs, progress
@@ -207,7 +265,8 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
     Raises
     ------
     InputError
-        Choices that exclude each other, an unknown effect, or a folder of another run.
+        Choices that exclude each other, an unknown effect, a folder of another run, or an estimator without
+        ``everyday=True``.
     SystemFailure
         The folder cannot be written.
 
@@ -217,13 +276,14 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
     the truth is written afterwards. docs/evidence/blind-tracks.md has what a large run says.
     """
     where = file_name("folder", folder, "the name of a folder")
-    made = Made(_glidelab.blind(interpreter(), where, whole("cases", cases, 1, MOST_CASES), checked_seed(seed) or 0,
-                                text("only", only, "the id of an effect"), switch("everyday", everyday),
-                                switch("pictures", pictures), switch("leave_out", leave_out), job_count(jobs),
-                                teller(progress)))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as given:
+        made = Made(_glidelab.blind(interpreter(), where, whole("cases", cases, 1, MOST_CASES), checked_seed(seed) or 0,
+                                    text("only", only, "the id of an effect"), switch("everyday", everyday),
+                                    switch("pictures", pictures), switch("leave_out", leave_out), given.command,
+                                    job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return Blind(made, found["seed"], found["failed"], tuple(_target(one) for one in found["targets"]),
                  found["expected_calibration_error"], tuple(
                      BlindCase(one["case"], one["kind"], tuple(cause["id"] for cause in one["truth"]), one["verdict"],
                                tuple(cause["id"] for cause in one["named"])) for one in found["outcomes"]),
-                 os.fspath(folder))
+                 os.fspath(folder), _answers(found), outside_runs(found, given.calls_s))

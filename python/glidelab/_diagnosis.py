@@ -14,8 +14,7 @@ from ._checks import Vector, frozen, real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
                       given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, stated_incline, teller)
-from ._recovered import QUANTITIES, Recovered, recovered_of
-from ._results import BY_ROW, Made, Result, frame_of, rounded
+from ._results import BY_ROW, QUANTITIES, Made, Recovered, Result, frame_of, recovered_of, rounded
 from ._shown import Brief, html_plot, html_table, new_axes
 from ._sources import Film, source_of
 

@@ -20,8 +20,7 @@ from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._outside import Estimator, WrongAnswer, checked_answer, registered, said_by
-from ._recovered import QUANTITIES
-from ._results import Quantity
+from ._results import QUANTITIES, Quantity
 from ._studies import Judged, Judgement
 
 _Function = TypeVar("_Function", bound=Estimator)

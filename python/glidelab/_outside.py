@@ -25,8 +25,7 @@ from . import _glidelab
 from ._checks import above_0, shown, text
 from ._errors import input_error
 from ._inputs import Track
-from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity
+from ._results import NORMAL95, QUANTITIES, Quantity
 
 _MOST_MEGABYTES = 1e9  # as of the command's --estimator-megabytes: no computer has as much
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fit/outside/outside_tally.h"
 #include "validate/blind/blind_score.h"
 #include "validate/blind/everyday_score.h"
 
@@ -17,6 +18,7 @@ struct BlindRun {
   std::uint64_t seed = 0;
   std::vector<validate::BlindOutcome> outcomes;
   validate::BlindScore score;
+  std::optional<fit::OutsideTally> outside = {};         ///< of an estimator that answered the same cases
   bool images = false;                                   ///< filmed experiments, not tracks
   std::optional<validate::EverydayScore> everyday = {};  ///< of everyday cases; `score` is then empty
 };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
@@ -10,6 +12,7 @@
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
+#include "report/text/outside_text.h"
 
 namespace glidelab::report {
 namespace {
@@ -28,9 +31,11 @@ std::string share_and_interval(const BlindShare& share) {
                      100.0 * interval.low, 100.0 * interval.high);
 }
 
-BlindShare all_covered(const EverydayScore& score, const std::string& quantity) {
+/// Of one class and one quantity; of all where they are empty.
+BlindShare covered_of(const EverydayScore& score, const std::string& of_class, const std::string& quantity) {
   BlindShare sum;
   for (const auto& [kind, by_quantity] : score.covered) {
+    if (!of_class.empty() && kind != of_class) continue;
     for (const auto& [key, share] : by_quantity) {
       if (!quantity.empty() && key != quantity) continue;
       sum.of += share.of;
@@ -160,6 +165,74 @@ Json calibration_json(const validate::EverydayCalibration& of) {
   return {{"of", of.of}, {"stated", of.stated}, {"right", of.right}, {"error", of.error}, {"by_chance", of.by_chance}};
 }
 
+/// The answers of all classes together, by quantity.
+std::map<std::string, validate::EverydayAnswers> all_answers(const EverydayScore& score) {
+  std::map<std::string, validate::EverydayAnswers> sum;
+  for (const auto& [kind, by_quantity] : score.answers) {
+    for (const auto& [key, of] : by_quantity) {
+      validate::EverydayAnswers& all = sum[key];
+      for (const auto& [to, from] : {std::pair(&all.answered, &of.answered), std::pair(&all.covered, &of.covered)}) {
+        to->of += from->of;
+        to->yes += from->yes;
+      }
+      all.error.of += of.error.of;
+      all.error.squares += of.error.squares;
+      all.error.sum += of.error.sum;
+    }
+  }
+  return sum;
+}
+
+const std::vector<std::string> kAnswersHeader = {
+    "quantity", "class", "answers", "rms error", "95 % intervals that hold", "those of the diagnosis"};
+
+/// "86 % (43 of 50)"; a dash if there are none.
+std::string share_alone(const BlindShare& share) {
+  return share.of == 0 ? "–" : fmt::format("{:.0f} % ({} of {})", 100.0 * share.share(), share.yes, share.of);
+}
+
+using ShareText = std::string (*)(const BlindShare&);
+
+/// A row for a quantity of some class: what the estimator answered, beside what the diagnosis recovered.
+std::vector<std::string> answers_row(const std::string& key, const std::string& kind,
+                                     const validate::EverydayAnswers& of, const BlindShare& of_diagnosis,
+                                     ShareText text_of) {
+  const std::string unit = core::unit_of(key);
+  return {
+      core::symbol_of(key),
+      kind,
+      fmt::format("{} of {}", of.answered.yes, of.answered.of),
+      of.error.of == 0 ? "–" : base::number_text(of.error.rms(), 2) + (unit.empty() || unit == "°" ? "" : " ") + unit,
+      text_of(of.covered),
+      text_of(of_diagnosis)};
+}
+
+TextRows all_answers_rows(const EverydayScore& score, ShareText text_of) {
+  const auto all = all_answers(score);
+  TextRows rows;
+  for (const core::QuantityName& quantity : core::kQuantities) {
+    const std::string key(quantity.key);
+    if (const auto of = all.find(key); of != all.end()) {
+      rows.push_back(answers_row(key, words_of_class("all"), of->second, covered_of(score, "", key), text_of));
+    }
+  }
+  return rows;
+}
+
+TextRows answers_rows_by_class(const EverydayScore& score) {
+  TextRows rows;
+  for (const auto& [kind, by_quantity] : score.answers) {
+    for (const core::QuantityName& quantity : core::kQuantities) {
+      const std::string key(quantity.key);
+      const auto of = by_quantity.find(key);
+      if (of == by_quantity.end()) continue;
+      rows.push_back(
+          answers_row(key, words_of_class(kind), of->second, covered_of(score, kind, key), share_and_interval));
+    }
+  }
+  return rows;
+}
+
 Json score_json(const EverydayScore& score) {
   Json everyday = Json::object();
   everyday["methods"] = Json::array();
@@ -180,6 +253,14 @@ Json score_json(const EverydayScore& score) {
   everyday["covered"] = Json::object();
   for (const auto& [kind, by_quantity] : score.covered) {
     for (const auto& [key, share] : by_quantity) everyday["covered"][kind][key] = interval_json(share);
+  }
+  if (!score.answers.empty()) everyday["answers"] = Json::object();
+  for (const auto& [kind, by_quantity] : score.answers) {
+    for (const auto& [key, of] : by_quantity) {
+      everyday["answers"][kind][key] = {{"answered", interval_json(of.answered)},
+                                        {"covered", interval_json(of.covered)},
+                                        {"error", error_json(of.error)}};
+    }
   }
   everyday["calibration"] = Json::object();
   for (const auto& [kind, of] : score.calibration) everyday["calibration"][kind] = calibration_json(of);
@@ -263,7 +344,7 @@ std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
        0.0,
        0.05},
       {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
-      {"recovered intervals contain the true value", all_covered(score, ""), {}, 0.90, 0.98}};
+      {"recovered intervals contain the true value", covered_of(score, "", ""), {}, 0.90, 0.98}};
   EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1, true};
   if (diagnosis.share_error.of > 0) shares.value = diagnosis.share_error.rms();
   targets.push_back(std::move(shares));
@@ -307,6 +388,7 @@ std::string everyday_json(const BlindRun& run) {
   }
   const auto all = score.calibration.find("all");
   put(document, "expected_calibration_error", all == score.calibration.end() ? 0.0 : all->second.error);
+  if (run.outside) document["outside"] = outside_json(*run.outside);
   document["everyday"] = score_json(score);
   document["outcomes"] = Json::array();
   for (const auto& outcome : run.outcomes) document["outcomes"].push_back(case_json(outcome));
@@ -333,7 +415,15 @@ std::string everyday_text(const BlindRun& run) {
   for (const EverydayTarget& target : everyday_targets(score)) {
     rows.push_back({target.what, found_text(target), limits_text(target)});
   }
-  return everyday_answer(score) + "\n\n" + text_table(rows, 1);
+  std::string text = everyday_answer(score) + "\n\n" + text_table(rows, 1);
+  if (!run.outside) return text;
+  if (const std::string failed = outside_failed(*run.outside); !failed.empty()) text = failed + " " + text;
+  TextRows answers = {{"quantity", "answers", "rms error", "95 % intervals that hold", "of the diagnosis"}};
+  for (auto row : all_answers_rows(score, share_alone)) {
+    row.erase(row.begin() + 1);  // the class: all
+    answers.push_back(std::move(row));
+  }
+  return text + "\n" + outside_text(*run.outside) + "\n\n" + text_table(answers, 1);
 }
 
 Page everyday_page(const BlindRun& run) {
@@ -353,6 +443,19 @@ Page everyday_page(const BlindRun& run) {
     targets.row({escape(target.what), escape(found_text(target)), escape(limits_text(target)) + how});
   }
   body += "<h2>Results against the targets</h2>\n" + targets.str();
+  if (run.outside) {
+    HtmlTable answers(kAnswersHeader, 6);
+    answers.stack_when_narrow(1);
+    for (const TextRows& rows : {all_answers_rows(score, share_and_interval), answers_rows_by_class(score)}) {
+      for (const auto& row : rows) {
+        answers.row({escape(row[0]), escape(row[1]), escape(row[2]), escape(row[3]), escape(row[4]), escape(row[5])});
+      }
+    }
+    body += "<h2>An estimator on the same cases</h2>\n<p>" + escape(outside_text(*run.outside)) + "</p>\n" +
+            answers.str() +
+            "<p class=\"soft\">The estimator saw the same folder as the diagnosis, which may add causes to the law. An "
+            "interval of the diagnosis is one of those that it recovers with these causes in the law.</p>\n";
+  }
   HtmlTable details({"what", "class", "strength", "by", "cases (95 % interval)"}, 5);
   details.stack_when_narrow(1);
   for (const auto& row : detail_rows(score)) {

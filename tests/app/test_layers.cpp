@@ -52,6 +52,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "validate/study/requirement/requirement.h",
       "validate/study/coverage/interval_coverage.h",
       "validate/study/certify/certificate.h",
+      "validate/study/baseline/gate.h",
       "validate/blind/blind_score.h",
       "validate/blind/everyday_score.h",
       "validate/challenge/challenge_score.h",

@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/result/results.h"
 #include "diagnose/result/explanation.h"
+#include "fit/outside/outside_tally.h"
 #include "validate/blind/blind_sequence.h"
 #include "validate/blind/case/blind_case.h"
 #include "validate/blind/case/everyday_case.h"
@@ -56,6 +58,12 @@ BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
 /// others counts for the others, one that contained only them counts for none.
 void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict);
 
+/// What an outside estimator answered to a case.
+struct BlindEstimate {
+  core::AnalysisResults results;  ///< all undetermined if it failed
+  fit::OutsideRun run;
+};
+
 inline constexpr double kSureName = 0.8;  ///< probability above which a name is certain
 
 struct BlindOutcome {
@@ -66,8 +74,9 @@ struct BlindOutcome {
   BlindVerdict verdict;
   std::optional<BlindVerdict> left_out;  ///< with the true effect removed from the list
   bool filmed = false;
-  std::optional<EverydayTruth> everyday;  ///< of an everyday case
-  std::optional<double> seconds;          ///< duration of its diagnosis, if measured
+  std::optional<EverydayTruth> everyday;       ///< of an everyday case
+  std::optional<double> seconds;               ///< duration of its diagnosis, if measured
+  std::optional<BlindEstimate> estimate = {};  ///< of an everyday case, if an estimator is judged
 };
 
 /// The word under which an effect is counted. Two pairs of effects are indistinguishable on tracks and count as one

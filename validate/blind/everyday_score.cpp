@@ -157,21 +157,43 @@ EverydayCalibration calibration_of(const std::vector<std::pair<double, bool>>& s
   return of;
 }
 
-void add_coverage(const BlindOutcome& outcome, EverydayScore& score) {
+/// What is true of the configuration of this mass and inclination, as stated; `where` names them in a message.
+const EverydayConfiguration& truth_of(const BlindOutcome& outcome, double mass_kg, double incline_deg,
+                                      const char* where) {
   constexpr double kSameMass = 1e-6, kSameIncline = 1e-3;  // kg, degrees: precision of the values in a file
-  for (const BlindRecovered& told : outcome.verdict.sequence.recovered) {
-    const auto& all = outcome.everyday->configurations;
-    const auto truth = std::find_if(all.begin(), all.end(), [&](const EverydayConfiguration& one) {
-      return std::abs(one.mass_kg - told.mass_kg) < kSameMass &&
-             std::abs(one.incline_deg - told.incline_deg) < kSameIncline;
-    });
-    if (truth == all.end()) {
-      throw base::InputError(base::Issue{fmt::format("case {}", outcome.index), 0, "recovered",
-                                         fmt::format("{} kg at {} degrees", told.mass_kg, told.incline_deg),
-                                         "a configuration of the case's experiment.toml"});
+  const auto& all = outcome.everyday->configurations;
+  const auto truth = std::find_if(all.begin(), all.end(), [&](const EverydayConfiguration& one) {
+    return std::abs(one.mass_kg - mass_kg) < kSameMass && std::abs(one.incline_deg - incline_deg) < kSameIncline;
+  });
+  if (truth == all.end()) {
+    throw base::InputError(base::Issue{fmt::format("case {}", outcome.index), 0, where,
+                                       fmt::format("{} kg at {} degrees", mass_kg, incline_deg),
+                                       "a configuration of the case's experiment.toml"});
+  }
+  return *truth;
+}
+
+void add_answers(const BlindOutcome& outcome, EverydayScore& score) {
+  for (const core::ConfigurationResult& of : outcome.estimate->results.configurations) {
+    const EverydayConfiguration& truth = truth_of(outcome, of.mass_kg, of.incline_deg, "configurations");
+    for (const core::QuantityName& quantity : core::kQuantities) {
+      const std::optional<double> value = true_value(truth, quantity.which);
+      if (!value) continue;
+      EverydayAnswers& answers = score.answers[std::string(word(outcome.everyday->kind))][std::string(quantity.key)];
+      const std::optional<core::Estimate>& said = core::value_of(of, quantity.which).estimate;
+      add(answers.answered, said.has_value());
+      if (!said) continue;
+      answers.error.add(said->value - *value);
+      add(answers.covered, said->low95 <= *value && *value <= said->high95);
     }
+  }
+}
+
+void add_coverage(const BlindOutcome& outcome, EverydayScore& score) {
+  for (const BlindRecovered& told : outcome.verdict.sequence.recovered) {
+    const EverydayConfiguration& truth = truth_of(outcome, told.mass_kg, told.incline_deg, "recovered");
     for (const auto& [key, interval] : told.interval95) {
-      const auto value = true_value(*truth, core::kQuantities.at(core::place_of(key)).which);
+      const auto value = true_value(truth, core::kQuantities.at(core::place_of(key)).which);
       add(score.covered[std::string(word(outcome.everyday->kind))][key],
           value && *value >= interval.low && *value <= interval.high);
     }
@@ -276,6 +298,7 @@ EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
       seconds += *outcome.seconds;
       score.most_s = std::max(score.most_s, *outcome.seconds);
     }
+    if (outcome.estimate) add_answers(outcome, score);
     if (said.failed) {
       ++score.failed[of];
       continue;

@@ -81,17 +81,25 @@ struct EverydayCalibration {
   double by_chance = 0.0;            ///< its mean if each verdict were right with the stated probability
 };
 
+/// An outside estimator's answers to one quantity that has a true value.
+struct EverydayAnswers {
+  BlindShare answered;  ///< of the true values
+  BlindShare covered;   ///< of the answers: the 95 % interval contains the true value
+  ErrorSum error;       ///< of the answers, in the quantity's unit
+};
+
 struct EverydayScore {
   std::vector<EverydayMethod> methods;  ///< the diagnosis, then forward selection
   SharesByCase main_helps;              ///< one, two: the main cause is the first of the names, claimed or not
   SharesByCase unknown;                 ///< outside, imperfections alone: the verdict is `unknown`
   BlindShare fair_claim;  ///< of the false claims for imperfections alone: an acceptable name for what makes half of
                           ///< their excess or more
-  std::map<std::string, std::map<std::string, BlindShare>> covered;  ///< by class and quantity, of those stated
-  std::map<std::string, EverydayCalibration> calibration;            ///< by class, and "all"
-  std::map<std::string, EverydayCalibration> by_verdict;             ///< the same by the verdict's word
-  ErrorSum remainder_error;                                          ///< one, two, if the diagnosis has one
-  std::map<std::string, std::size_t> cases, failed;                  ///< by class
+  std::map<std::string, std::map<std::string, BlindShare>> covered;       ///< by class and quantity, of those stated
+  std::map<std::string, std::map<std::string, EverydayAnswers>> answers;  ///< by class and quantity
+  std::map<std::string, EverydayCalibration> calibration;                 ///< by class, and "all"
+  std::map<std::string, EverydayCalibration> by_verdict;                  ///< the same by the verdict's word
+  ErrorSum remainder_error;                                               ///< one, two, if the diagnosis has one
+  std::map<std::string, std::size_t> cases, failed;                       ///< by class
   std::size_t timed = 0;
   double mean_s = 0.0, most_s = 0.0;  ///< of a diagnosis
 };

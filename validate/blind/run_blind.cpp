@@ -8,6 +8,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -31,6 +32,11 @@ void check(const BlindOptions& options) {
   if (options.everyday && (options.images || options.leave_out)) {
     throw base::InputError(base::Issue{"", 0, "--everyday", options.images ? "with --films" : "with --leave-out",
                                        "everyday cases are tracks, diagnosed once"});
+  }
+  if (options.outside && !options.everyday) {
+    throw base::InputError(base::Issue{"", 0, "--estimator-command", "an estimator without --everyday",
+                                       "--everyday as well: only everyday cases state true values of K/m, mu and "
+                                       "alpha, and an estimator names no cause"});
   }
   if (options.only.empty()) return;
   std::string known;
@@ -160,6 +166,14 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
           {}};
 }
 
+/// What the estimator says of a case, whose folder it gets alone.
+BlindEstimate estimate_of(const fit::OutsideEstimator& estimator, const Made& one) {
+  const base::TemporaryFolder alone("experiment");
+  one.write(alone / "experiment");
+  fit::OutsideOutcome outcome = fit::run_outside(estimator, alone / "experiment");
+  return {std::move(outcome.results), std::move(outcome.run)};
+}
+
 /// One whole case; its files are complete once the truth exists.
 BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose,
                       const FilmRenderer& render, const std::function<void()>& look) {
@@ -184,6 +198,8 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
       diagnose_into(diagnosis, diagnose, folder, {});
     }
   }
+  std::optional<BlindEstimate> estimate;
+  if (options.outside) estimate = estimate_of(*options.outside, one);
   if (leaves_out && !is_diagnosed(without)) diagnose_into(without, diagnose, folder, {one.causes.front().id});
   if (!done) {
     base::StagedOutput staged(out / "truth");
@@ -192,6 +208,7 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
   }
   BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.images, one.everyday, {}};
   if (one.everyday) outcome.seconds = seconds_in(diagnosis);
+  outcome.estimate = std::move(estimate);
   outcome.verdict = verdict_in(diagnosis, one.told);
   if (leaves_out) outcome.left_out = verdict_in(without, one.told);
   return outcome;
@@ -221,6 +238,14 @@ std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path&
     ++done;
   });
   return outcomes;
+}
+
+fit::OutsideTally tally_of(const fit::OutsideEstimator& estimator, const std::vector<BlindOutcome>& outcomes) {
+  std::vector<fit::OutsideRun> runs;
+  for (const BlindOutcome& outcome : outcomes) {
+    if (outcome.estimate) runs.push_back(outcome.estimate->run);
+  }
+  return fit::tally_of(estimator, runs);
 }
 
 }  // namespace glidelab::validate

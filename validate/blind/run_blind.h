@@ -16,10 +16,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/long_work.h"
+#include "fit/outside/outside_estimator.h"
 #include "validate/blind/blind_score.h"
 #include "validate/blind/case/blind_filmed_case.h"
 
@@ -35,6 +37,9 @@ struct BlindOptions {
   bool images = false;     ///< filmed experiments instead of tracks
   bool everyday = false;   ///< tracks with several small imperfections (everyday_case.h)
   int jobs = 1;
+  /// Judged on the same everyday cases. It gets a copy of the experiment folder, alone, before the truth is written.
+  /// Its answers are not kept: a run that continues asks it about every case again, while the diagnoses stay.
+  std::optional<fit::OutsideEstimator> outside = {};
 };
 
 /// Diagnoses the folder and leaves diagnosis.json in `out`, in another process; returns "" or the error.
@@ -49,5 +54,8 @@ std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path&
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
                                     const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
                                     const FilmRenderer& render = {});
+
+/// How the estimator's runs went, over the outcomes that have its answer.
+fit::OutsideTally tally_of(const fit::OutsideEstimator& estimator, const std::vector<BlindOutcome>& outcomes);
 
 }  // namespace glidelab::validate

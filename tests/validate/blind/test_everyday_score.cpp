@@ -1,14 +1,23 @@
 #include "validate/blind/everyday_score.h"
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "core/result/results.h"
+#include "fit/outside/outside_estimator.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
+#include "validate/blind/run_blind.h"
 
 using namespace glidelab;
+using Catch::Matchers::Contains;
 using validate::BlindOutcome;
 using validate::EverydayClass;
 
@@ -235,4 +244,51 @@ TEST_CASE("keys of the sequence are read where they are there, and empty where t
   CHECK(fresh.recovered.front().interval95.at("k_over_m_1_s").high == 2.2);
   base::write_file(temp / "bad.json", start + R"(, "explained": [{"id": "tether"}]})");
   CHECK_THROWS_AS(validate::read_blind_verdict(temp / "bad.json"), base::InputError);
+}
+
+TEST_CASE("an estimator's answers count where there is a true value, by class and quantity") {
+  auto one = made(EverydayClass::one, true, {{"quadratic_drag", 0.9}});
+  one.everyday->configurations = {{"level", 0.3, 0.0, 2.0, 0.01, 0.0, {}}, {"level", 0.4, 0.0, 1.5, 0.02, 0.0, {}}};
+  one.estimate.emplace();
+  const auto answer = [](double mass_kg, const std::optional<core::Estimate>& k) {
+    core::ConfigurationResult result;
+    result.mass_kg = mass_kg;
+    result.k_over_m_1_s.estimate = k;
+    result.v_lim_m_s.estimate = core::Estimate{1.0, 0.1, 0.8, 1.2};  // there is no true one
+    return result;
+  };
+  // Off by +0.3 with an interval that holds 2.0, and by -0.4 with one that ends below 1.5.
+  one.estimate->results.configurations = {answer(0.3, core::Estimate{2.3, 0.2, 1.9, 2.7}),
+                                          answer(0.4, core::Estimate{1.1, 0.1, 0.9, 1.3})};
+  auto failed = made(EverydayClass::outside, true, {{"cogging", 0.9}});
+  failed.verdict.verdict.reset();  // the diagnosis failed, the estimator did not
+  failed.everyday->configurations = {{"level", 0.3, 0.0, 2.0, 0.01, 0.0, 1.0}};
+  failed.estimate.emplace();
+  failed.estimate->results.configurations = {answer(0.3, {})};
+  const auto score = validate::score_everyday({one, failed});
+  const auto& k = score.answers.at("one").at("k_over_m_1_s");
+  CHECK(k.answered.of == 2);
+  CHECK(k.answered.yes == 2);
+  CHECK(k.covered.of == 2);
+  CHECK(k.covered.yes == 1);
+  CHECK(k.error.rms() == Approx(std::sqrt((0.09 + 0.16) / 2.0)));
+  CHECK(k.error.mean() == Approx(-0.05));
+  CHECK(score.answers.at("one").at("mu").answered.of == 2);
+  CHECK(score.answers.at("one").at("mu").answered.yes == 0);
+  CHECK_FALSE(score.answers.at("one").contains("v_lim_m_s"));
+  CHECK(score.answers.at("outside").at("k_over_m_1_s").answered.of == 1);
+  CHECK(score.answers.at("outside").at("k_over_m_1_s").answered.yes == 0);
+  CHECK(score.answers.at("outside").at("v_lim_m_s").covered.yes == 1);
+  one.estimate->results.configurations[0].mass_kg = 0.35;
+  CHECK_THROWS_AS(validate::score_everyday({one}), base::InputError);
+}
+
+TEST_CASE("an estimator is judged on everyday cases alone, for only they state true values") {
+  validate::BlindOptions options;
+  options.cases = 1;
+  options.outside = fit::outside_estimator("sh -c 'exit 1' mine {folder} {out}", "mine");
+  const tests::TempDir temp;
+  const auto diagnose = [](const auto&, const auto&, const auto&) { return std::string("must not be called"); };
+  CHECK_THROWS_WITH(validate::run_blind(options, temp / "out", diagnose), Contains("--estimator-command"));
+  CHECK_FALSE(std::filesystem::exists(temp / "out"));
 }

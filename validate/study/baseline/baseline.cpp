@@ -17,7 +17,6 @@
 #include "fit/estimators.h"
 #include "validate/made_tracks/oracle_bandwidth.h"
 #include "validate/random_use.h"
-#include "validate/truth/comparison.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -30,37 +29,6 @@ std::pair<double, double> mean_and_sd(const std::vector<double>& values) {
   for (const double value : values) sum += value;
   for (const double value : values) square += (value - sum / n) * (value - sum / n);
   return {sum / n, values.size() > 1 ? std::sqrt(square / (n - 1.0)) : 0.0};
-}
-
-std::vector<ErrorRecord> records_of(const std::vector<std::vector<QuantityComparison>>& runs) {
-  std::vector<ErrorRecord> records;
-  for (std::size_t i = 0; i < runs.front().size(); ++i) {
-    if (!runs.front()[i].truth) continue;
-    const QuantityComparison& first = runs.front()[i];
-    ErrorRecord record;
-    record.configuration = first.configuration;
-    record.estimator = first.estimator;
-    record.quantity = first.quantity;
-    record.runs = runs.size();
-    std::vector<double> errors, deviations;
-    double square = 0.0;
-    for (const auto& run : runs) {
-      const QuantityComparison& q = run.at(i);
-      if (!q.error) continue;
-      if (q.sd && std::abs(*q.error) <= core::kNormal95 * *q.sd) ++record.covered;
-      errors.push_back(*q.error);
-      square += *q.error * *q.error;
-    }
-    record.answers = errors.size();
-    std::tie(record.mean, record.sd) = mean_and_sd(errors);
-    for (const double error : errors) deviations.push_back(std::abs(error - record.mean));
-    std::tie(record.deviation, record.deviation_sd) = mean_and_sd(deviations);
-    if (first.cramer_rao_sd && square > 0.0) {
-      record.efficiency = std::pow(*first.cramer_rao_sd, 2) / (square / static_cast<double>(record.answers));
-    }
-    records.push_back(std::move(record));
-  }
-  return records;
 }
 
 /// Logarithms that describe one run's smoothing of a clip.
@@ -101,6 +69,37 @@ std::vector<std::optional<Smoothed>> smoothed_clips(const core::AnalysisResults&
 
 }  // namespace
 
+std::vector<ErrorRecord> error_records(const std::vector<std::vector<QuantityComparison>>& runs) {
+  std::vector<ErrorRecord> records;
+  for (std::size_t i = 0; i < runs.front().size(); ++i) {
+    if (!runs.front()[i].truth) continue;
+    const QuantityComparison& first = runs.front()[i];
+    ErrorRecord record;
+    record.configuration = first.configuration;
+    record.estimator = first.estimator;
+    record.quantity = first.quantity;
+    record.runs = runs.size();
+    std::vector<double> errors, deviations;
+    double square = 0.0;
+    for (const auto& run : runs) {
+      const QuantityComparison& q = run.at(i);
+      if (!q.error) continue;
+      if (q.sd && std::abs(*q.error) <= core::kNormal95 * *q.sd) ++record.covered;
+      errors.push_back(*q.error);
+      square += *q.error * *q.error;
+    }
+    record.answers = errors.size();
+    std::tie(record.mean, record.sd) = mean_and_sd(errors);
+    for (const double error : errors) deviations.push_back(std::abs(error - record.mean));
+    std::tie(record.deviation, record.deviation_sd) = mean_and_sd(deviations);
+    if (first.cramer_rao_sd && square > 0.0) {
+      record.efficiency = std::pow(*first.cramer_rao_sd, 2) / (square / static_cast<double>(record.answers));
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
 std::vector<core::AnalysisResults> analyze_as_judged(const MadeTracks& made) {
   return fit::estimate_each(fit::judged_estimators(), [&](core::LineMethod lines) {
     return analyze_tracks(made, core::MotionOptions{.lines = lines});
@@ -128,7 +127,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
     }
     progress("runs", static_cast<double>(++done) / static_cast<double>(options.runs));
   });
-  baseline.records = records_of(runs);
+  baseline.records = error_records(runs);
   const auto none = [](const auto& clips) { return clips.empty(); };
   if (!std::all_of(smoothed.begin(), smoothed.end(), none)) baseline.smoothing = smoothing_of(clean.truth, smoothed);
   return baseline;

@@ -13,6 +13,7 @@
 #include "core/result/results.h"
 #include "render/scenario/scenario.h"
 #include "validate/made_tracks/made_tracks.h"
+#include "validate/truth/comparison.h"
 
 namespace glidelab::validate {
 
@@ -58,6 +59,10 @@ using AnalyzeTracks = std::function<std::vector<core::AnalysisResults>(const Mad
 
 /// Results of each of fit::judged_estimators().
 std::vector<core::AnalysisResults> analyze_as_judged(const MadeTracks& made);
+
+/// The errors of each quantity with a true value. All runs list the same quantities in the same order; there is one or
+/// more.
+std::vector<ErrorRecord> error_records(const std::vector<std::vector<QuantityComparison>>& runs);
 
 Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,
                           const BaselineOptions& options, const AnalyzeTracks& analyze = analyze_as_judged,

@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/long_work.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "tests/catch.h"
 #include "tests/validate/small_sweep.h"
+#include "validate/random_use.h"
+#include "validate/truth/binomial.h"
+#include "validate/truth/comparison.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;
@@ -122,55 +129,71 @@ TEST_CASE("A gate of few runs is weak, and says with how many it would not be") 
 
 namespace {
 
-/// The fit of the whole motion without its clips, under its own name, and with K/m errors a tenth larger under another.
-std::vector<core::AnalysisResults> and_worsened(const MadeTracks& made) {
-  core::AnalysisResults results = fit::with_trajectory_fits(analyze_tracks(made, core::MotionOptions{}));
-  results.clips.clear();
-  core::AnalysisResults worse = results;
-  worse.estimator = "worsened";
-  core::Quantity& k = worse.configurations.at(0).k_over_m_1_s;
-  const double truth = made.truth.configurations.at(0).k_over_m_1_s.value();
-  if (k.estimate) k.estimate->value = truth + kSmallFactor * (k.estimate->value - truth);
-  return {results, worse};
+/// One quantity of each run of an estimator, with its truth.
+using Runs = std::vector<std::vector<QuantityComparison>>;
+
+/// The fit of the whole motion to `count` replicates of the scenario's tracks.
+Runs fitted_runs(const render::Scenario& scenario, double noise_m, std::uint64_t seed, std::size_t count) {
+  const MadeTracks clean = make_tracks(scenario, seed);
+  Runs runs(count);
+  base::for_each_parallel(count, 2, [&](std::size_t run) {
+    const MadeTracks made = with_noise(clean, noise_m, derived_seed(seed, run));
+    const core::AnalysisResults lines = analyze_tracks(made, core::MotionOptions{});
+    runs[run] = compare_quantities(fit::with_trajectory_fits(lines), made.truth);
+  });
+  return runs;
 }
 
-/// What of a baseline is by one of its estimators, under a common name.
-Baseline only(Baseline baseline, const std::string& estimator) {
-  std::erase_if(baseline.records, [&](const ErrorRecord& record) { return record.estimator != estimator; });
-  for (ErrorRecord& record : baseline.records) record.estimator = "judged";
-  return baseline;
+/// The runs with these numbers as a baseline; the errors of K/m are `factor` times as large.
+Baseline baseline_of(const Runs& pool, const std::size_t* numbers, std::size_t count, double factor) {
+  Runs runs;
+  for (std::size_t i = 0; i < count; ++i) {
+    runs.push_back(pool[numbers[i]]);
+    for (QuantityComparison& q : runs.back()) {
+      if (q.quantity == "k_over_m_1_s" && q.error) *q.error *= factor;
+    }
+  }
+  return {"text", 2e-5, count, {}, error_records(runs), {}};
 }
 
 }  // namespace
 
 TEST_CASE("the gate finds an estimator of real motions whose K/m was worsened by a tenth, and no unchanged one",
           "[slow]") {
-  const render::Scenario scenario =
-      render::read_scenario(tests::kSweptScenario, "swept.toml", render::ScenarioChecks::values);
-  const auto measured = [&](std::uint64_t seed, std::uint64_t runs) {
-    return measure_baseline(scenario, "text", {.noise_m = 2e-5, .runs = runs, .seed = seed, .jobs = 2}, and_worsened);
+  constexpr std::size_t kPool = 30000, kPilot = 200, kGates = 1000;
+  const Runs pool = fitted_runs(
+      render::read_scenario(tests::kSweptScenario, "swept.toml", render::ScenarioChecks::values), 2e-5, 100, kPool);
+  std::vector<std::size_t> numbers(kPool);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  const auto runs_for_k = [&](std::size_t count) {
+    const Baseline of = baseline_of(pool, numbers.data(), count, 1.0);
+    for (const Detectable& one : detectable(of, of, compare_baselines(of, of))) {
+      if (one.quantity == "k_over_m_1_s") return one.runs_for_small;
+    }
+    return std::uint64_t{0};
   };
-  const Baseline few = only(measured(100, 200), fit::kTrajectory);
-  const std::vector<Detectable> all = detectable(few, few, compare_baselines(few, few));
-  const auto k =
-      std::find_if(all.begin(), all.end(), [](const Detectable& of) { return of.quantity == "k_over_m_1_s"; });
-  REQUIRE(k != all.end());
-  const std::uint64_t runs = k->runs_for_small;
+  const std::uint64_t runs = runs_for_k(kPilot);
   // 12 tests of three quantities at least; normal errors need 2870 to 3030 runs then, and of 200 runs their spread is
   // known to 10 %.
   CHECK(runs > 2000);
-  CHECK(runs < 4500);
-  const Baseline then = only(measured(101, runs), fit::kTrajectory);
-  int found = 0, alarms = 0;
-  constexpr int kGates = 8;
-  for (int gate = 0; gate < kGates; ++gate) {
-    const Baseline now = measured(static_cast<std::uint64_t>(102 + gate), runs);
-    found += compare_baselines(then, only(now, "worsened")).worse.empty() ? 0 : 1;
-    alarms += compare_baselines(then, only(now, fit::kTrajectory)).worse.empty() ? 0 : 1;
+  REQUIRE(runs < 4500);
+  // Each gate draws its two sets of runs anew, without replacement: their difference has the variance of independent
+  // sets, whatever the pool.
+  std::mt19937_64 engine(101);
+  std::size_t found = 0, alarms = 0;
+  for (std::size_t gate = 0; gate < kGates; ++gate) {
+    for (std::size_t i = 0; i < 2 * runs; ++i) std::swap(numbers[i], numbers[i + engine() % (kPool - i)]);
+    const Baseline then = baseline_of(pool, numbers.data(), runs, 1.0);
+    found +=
+        compare_baselines(then, baseline_of(pool, numbers.data() + runs, runs, kSmallFactor)).worse.empty() ? 0 : 1;
+    alarms += compare_baselines(then, baseline_of(pool, numbers.data() + runs, runs, 1.0)).worse.empty() ? 0 : 1;
   }
-  WARN("runs " << runs << ", worsened found " << found << " of " << kGates << ", false alarms " << alarms);
-  // One baseline for all: its own noise is common to them. Fewer than 5 of 8 with probability 0.95, or more than 1
-  // alarm with 0.01, come once in 300 times or more seldom.
-  CHECK(found >= 5);
-  CHECK(alarms <= 1);
+  const ProportionInterval power = proportion_interval(found, kGates, 0.95);
+  const ProportionInterval false_alarms = proportion_interval(alarms, kGates, 0.95);
+  WARN("runs " << runs << " (by all " << kPool << ": " << runs_for_k(kPool) << "), worsened found " << found << " of "
+               << kGates << " (95 %: " << power.low << " to " << power.high << "), false alarms " << alarms
+               << " (95 %: " << false_alarms.low << " to " << false_alarms.high << ")");
+  // As above.
+  CHECK(found >= 930);
+  CHECK(alarms <= 20);
 }
