@@ -15,6 +15,7 @@
 #include "core/math/even_times.h"
 #include "core/math/quantile.h"
 #include "core/pictures/camera/restitution.h"
+#include "core/pictures/marker/pattern/framed_square.h"
 #include "core/pictures/marker/pattern/moving_pattern.h"
 #include "core/pictures/marker/pattern/template_look.h"
 #include "core/pictures/marker/second_look.h"
@@ -134,6 +135,7 @@ void require_visible(const ClipSetup& clip, const Restitution& restitution, cv::
 struct Looked {
   SeenClip seen;
   std::optional<NoMarker> none = {};
+  bool square_moves = false;  ///< a framed square of the stated size (framed_square.h)
 
   /// NoMarker if there is none.
   SeenClip marker() && {
@@ -167,11 +169,14 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
     scene.emplace(source->facts().lossy.value_or(false));
     seen.images = std::make_shared<ImageRecord>();
   }
+  SquareWatch squares;
+  const bool may_be_square = any == nullptr && !with_color;
   while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
     if (seen.frame_t_s.empty()) require_visible(clip, restitution, seen.size);
     seen.frame_t_s.push_back(frame->t_s);
     tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
+    if (may_be_square && !frame->draw) squares.add(frame->grey, frame->index, radius_at);
     if (scene) {
       scene->add(frame->grey, frame->t_s);
       seen.images->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
@@ -188,7 +193,7 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) finish_record(source->facts(), signal_kind(marker) == SignalKind::dark, *scene, seen);
-  return {std::move(seen), std::move(none)};
+  return {std::move(seen), std::move(none), squares.any_moves()};
 }
 
 }  // namespace
@@ -266,6 +271,7 @@ class FurtherLooks {
   std::optional<SeenClip> as_lit_body(const SeenClip& rough, const std::vector<FrameWindow>& windows,
                                       const StillBackground& background) const;
   bool as_own_look(const SeenClip& rough, const std::vector<FrameWindow>& windows);
+  std::optional<SeenClip> as_framed_square(const SeenClip& disc) const;
   bool as_moving_pattern(const SeenClip& disc);
   bool in_more_frames(const SeenClip& found) const {
     return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before_;
@@ -351,6 +357,24 @@ bool FurtherLooks::as_moving_pattern(const SeenClip& disc) {
   return false;
 }
 
+/// The framed square of the stated size that moves, unless a disc that moves is seen in more frames.
+std::optional<SeenClip> FurtherLooks::as_framed_square(const SeenClip& disc) const {
+  const std::vector<MovingPattern> squares = moving_squares(
+      again_, [&](cv::Point2d pixel) { return restitution_.marker_radius_px(pixel).value_or(kSomeRadiusPx); });
+  const std::size_t fewest = !disc.marker.sightings.empty() && moves(disc.marker) ? disc.marker.sightings.size() : 0;
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const SeenClip rough = with_marker(disc, squares[i].rough);
+    auto marker = look_by_template(rough.marker, windows_of(rough), shape_at_, RoughTrack::of_outline);
+    if (!marker || !well_seen(*marker) || marker->sightings.size() < fewest) continue;
+    SeenClip found = with_marker(rough, *std::move(marker));
+    if (not_from_start(found, marker_in(experiment_, clip_), clip_)) continue;
+    found.dark_marker = false;
+    if (!marker_in(experiment_, clip_).start_px) require_no_twin(squares, i, clip_);
+    return found;
+  }
+  return std::nullopt;
+}
+
 SeenClip FurtherLooks::after_hue(SeenClip seen) {
   again_.frames = seen.frame_t_s.size();
   auto lit = as_lit_body(seen, windows_of(seen), background_of(again_));
@@ -368,6 +392,10 @@ SeenClip FurtherLooks::after(Looked disc) {
   const double radius_px = restitution_.marker_radius_px(middle).value_or(kSomeRadiusPx);
   // By its own look, unless it is as large as half the image.
   const bool may_have_look = radius_px < 0.5 * std::min(middle.x, middle.y);
+  // A square with a frame is no disc, though one may be fitted to parts of its pattern.
+  if (disc.square_moves && may_have_look && (disc.none || is_worth_a_second_look(disc.seen.marker, again_.frames))) {
+    if (auto square = as_framed_square(disc.seen)) return *std::move(square);
+  }
   // A disc at rest is hardly the marker if a pattern of its size moves.
   const bool rests = !disc.none && !moves(disc.seen.marker);
   if (rests && may_have_look && as_moving_pattern(disc.seen)) return *std::move(own_look_);

@@ -11,6 +11,7 @@
 #include "core/pictures/frames/frame_source.h"
 #include "tests/catch.h"
 #include "tests/core/clip_in_memory.h"
+#include "tests/core/framed_marker.h"
 #include "tests/core/lit_scene.h"
 #include "tests/core/notes.h"
 
@@ -83,6 +84,49 @@ TEST_CASE("A clip of a bull's eye is read six times, and every frame shows it, a
       // Edges of a hundred codes, 50 px long, with a noise of 1.5 codes give 0.005 px; the grid of the look leaves
       // more.
       CHECK(std::hypot(sighting.u_px - place(sighting.frame).x, sighting.v_px - place(sighting.frame).y) < 0.1);
+    }
+  }
+}
+
+TEST_CASE("A square marker with a pattern in its frame is found in every frame, at the centre of its outline") {
+  // On a dark body, and on a bright one, on which its paper hardly stands out.
+  for (const double body : {0.05, 0.6}) {
+    CAPTURE(body);
+    std::vector<cv::Mat> frames;
+    for (std::size_t k = 0; k < kFrames; ++k) {
+      const auto light = [&](double u, double v) {
+        const double x = (u - place(k).x) / kRadius, y = (v - place(k).y) / kRadius;
+        const double own = tests::framed_marker(x, y);
+        if (own >= 0.0) return own;
+        if (std::abs(x) < 2.6 && std::abs(y) < 1.7) return body;
+        return 0.2 + 0.06 * std::sin(0.31 * u) * std::cos(0.27 * v);
+      };
+      frames.push_back(tests::expose_light(kSize, light, true, 1.5, 8400 + k));
+    }
+    const core::FrameOpener open = [&](const std::filesystem::path&, const core::CameraSettings&, bool,
+                                       std::optional<cv::Size>) { return std::make_unique<TimedClip>(frames); };
+    core::Experiment experiment;
+    experiment.camera.emplace().frame_rate_hz = kRate;
+    experiment.scale = core::ScaleSetup{kPixelsPerMetre, 0.0};
+    experiment.marker.emplace().diameter_m = 2.0 * kRadius / kPixelsPerMetre;
+    experiment.clips.resize(1);
+    experiment.clips.front().file = "clip.mkv";
+    experiment.clips.front().group = "all";
+    const core::ImageResults seen = core::tracks_of(experiment, 1, base::no_progress, open);
+    const auto* const measured = tests::note_of<core::MarkerMeasuredBy>(seen.tracks.at(0).notes);
+    REQUIRE(measured != nullptr);
+    CHECK(measured->what == core::MarkerMeasuredBy::What::own_look);
+    const std::vector<core::MarkerSighting>& sightings = seen.tracks.at(0).sightings;
+    REQUIRE(sightings.size() == kFrames);
+    cv::Point2d mean;
+    for (const core::MarkerSighting& sighting : sightings)
+      mean += (cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame)) / static_cast<double>(kFrames);
+    // Of the outline's 0.3 px in each frame the root of 48 is left.
+    CHECK(cv::norm(mean) < 0.08);
+    for (const core::MarkerSighting& sighting : sightings) {
+      // As of the bull's eye, without the offset that all frames share.
+      const cv::Point2d off = cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame) - mean;
+      CHECK(cv::norm(off) < 0.1);
     }
   }
 }

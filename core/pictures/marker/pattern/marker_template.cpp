@@ -18,11 +18,13 @@ namespace {
 constexpr std::size_t kFewestWindows = 8;
 constexpr int kSharpenings = 4;           // after these, a hundredth of the look is left
 constexpr int kFewestNodesPerRadius = 3;  // of the grid
-constexpr int kMostNodesPerRadius = 24;   // the grid of a larger marker has steps of a few pixels
-constexpr int kNodesBeyond = 3;           // margin that the interpolation needs
-constexpr double kLeastOfNode = 0.5;      // weight of pixels, below which a node has no value
-constexpr double kRobustTimes = 2.5;      // times the usual residual, beyond which a pixel counts less (Huber)
-constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
+constexpr int kMostNodesPerRadius = 48;   // the grid of a larger marker has steps of a few pixels
+constexpr double kNodesPerPixel = 2.0;  // edges are narrower than a pixel: on a grid of whole ones they err by 0.04 px
+constexpr std::size_t kFewestForFineGrid = 32;  // windows; fewer do not fill the grid
+constexpr int kNodesBeyond = 3;                 // margin that the interpolation needs
+constexpr double kLeastOfNode = 0.5;            // weight of pixels, below which a node has no value
+constexpr double kRobustTimes = 2.5;            // times the usual residual, beyond which a pixel counts less (Huber)
+constexpr double kLeastResidual = 0.29;         // codes, 1 / sqrt(12)
 constexpr double kSettled_px = 2e-4;
 constexpr double kNearlySettled_px = 0.02;  // a longer step back is no jump of a weight
 constexpr double kNormalOfMedian = 1.4826;  // standard deviation of a normal residual over the median of its size
@@ -123,6 +125,24 @@ class Splat {
   double per_node_, origin_;
 };
 
+/// Gives nodes without pixels the mean of their neighbours with some: where the marker moves along rows, its pixels
+/// always lie alike between the rows of the grid, and may miss every other one.
+void fill_from_neighbours(cv::Mat& look, const Splat& splat) {
+  const auto is_known = [&](int j, int i) { return splat.weights().at<double>(j, i) > kLeastOfNode; };
+  for (int j = 1; j + 1 < look.rows; ++j) {
+    for (int i = 1; i + 1 < look.cols; ++i) {
+      if (is_known(j, i)) continue;
+      double sum = 0.0, known = 0.0;
+      for (const cv::Point beside : {cv::Point(0, -1), cv::Point(0, 1), cv::Point(-1, 0), cv::Point(1, 0)}) {
+        if (!is_known(j + beside.y, i + beside.x)) continue;
+        sum += look.at<double>(j + beside.y, i + beside.x);
+        known += 1.0;
+      }
+      if (known >= 2.0) look.at<double>(j, i) = sum / known;
+    }
+  }
+}
+
 }  // namespace
 
 MarkerTemplate::Value MarkerTemplate::at(double x, double y) const {
@@ -192,8 +212,9 @@ std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindo
   }
   if (radii.size() < kFewestWindows) return std::nullopt;
   MarkerTemplate made;
-  made.nodes_per_radius_ =
-      std::clamp(static_cast<int>(std::lround(median_of(radii))), kFewestNodesPerRadius, kMostNodesPerRadius);
+  const double per_pixel = radii.size() < kFewestForFineGrid ? 1.0 : kNodesPerPixel;
+  made.nodes_per_radius_ = std::clamp(static_cast<int>(std::lround(per_pixel * median_of(radii))),
+                                      kFewestNodesPerRadius, kMostNodesPerRadius);
   const int half = static_cast<int>(std::ceil(kReach * made.nodes_per_radius_)) + kNodesBeyond, side = 2 * half + 1;
   made.look_ = cv::Mat::zeros(side, side, CV_64F);
   made.weight_ = cv::Mat::zeros(side, side, CV_64F);
@@ -214,6 +235,7 @@ std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindo
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) made.look_.at<double>(j, i) += left.mean(j, i);
     }
+    fill_from_neighbours(made.look_, left);
   }
   const Splat squares = of_all([&](double x, double y, double code) {
     const double off = code - made.value_at(x, y);

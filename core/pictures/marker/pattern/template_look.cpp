@@ -67,13 +67,14 @@ bool is_on_lattice(const std::vector<PlaceInFrame>& places, double cv::Point2d::
 
 class TemplateLook {
  public:
-  TemplateLook(const TrackedMarker& rough, const ShapeAt& shape_at) : rough_(rough), shape_at_(shape_at) {}
+  TemplateLook(const TrackedMarker& rough, const ShapeAt& shape_at, RoughTrack kind)
+      : rough_(rough), shape_at_(shape_at), kind_(kind) {}
 
   std::optional<TrackedMarker> marker(const std::vector<FrameWindow>& windows) {
     if (rough_.sightings.size() < kFewestSeen) return std::nullopt;
     take_windows(windows);
     const std::vector<std::optional<TemplateFit>> guesses = fits_;
-    if (auto found = settled()) return found;
+    if (auto found = settled(); found || kind_ == RoughTrack::of_outline) return found;
     for (int stretch = 0; stretch < kStretches; ++stretch) {
       keep_stretch(guesses, stretch);
       if (auto found = settled(); found && has_own_centre_) return found;
@@ -91,6 +92,7 @@ class TemplateLook {
   void drop_strays();
   void put_on_clock();
   std::vector<PlaceInFrame> places() const;
+  std::vector<std::optional<TemplateFit>> on_course() const;
   std::optional<TrackedMarker> tracked() const;
   std::size_t seen() const {
     return static_cast<std::size_t>(
@@ -105,6 +107,7 @@ class TemplateLook {
 
   const TrackedMarker& rough_;
   const ShapeAt& shape_at_;
+  const RoughTrack kind_;
   std::vector<std::size_t> frames_;  ///< of the windows, in order
   std::vector<std::size_t> clock_;   ///< the same with the frames that the camera lost
   std::vector<TemplateWindow> windows_;
@@ -149,13 +152,13 @@ std::optional<TrackedMarker> TemplateLook::settled() {
   fit_lost();
   drop_strays();
   if (seen() < std::max(kFewestSeen, rough_.sightings.size())) return std::nullopt;
-  if (!put_at_own_centre()) return std::nullopt;
+  if (kind_ == RoughTrack::of_parts && !put_at_own_centre()) return std::nullopt;
   return tracked();
 }
 
 /// Finds the look from the positions, then the positions from the look.
 bool TemplateLook::take_turn() {
-  look_ = MarkerTemplate::of(windows_, fits_);
+  look_ = MarkerTemplate::of(windows_, on_course());
   if (!look_) return false;
   std::vector<double> residuals;
   for (std::size_t k = 0; k < windows_.size(); ++k) {
@@ -178,7 +181,7 @@ bool TemplateLook::take_turn() {
 bool TemplateLook::put_at_own_centre() {
   constexpr int kCentreRounds = 4;
   for (int round = 0; round < kCentreRounds; ++round) {
-    look_ = MarkerTemplate::of(windows_, fits_);
+    look_ = MarkerTemplate::of(windows_, on_course());
     if (!look_) return false;
     const std::optional<cv::Point2d> centre = look_->centre_of_symmetry();
     if (!centre) return true;
@@ -196,6 +199,21 @@ std::vector<PlaceInFrame> TemplateLook::places() const {
     if (fits_[k]) places.push_back({clock_[k], fits_[k]->centre});
   }
   return places;
+}
+
+/// The fits with the places that the frames around them expect, where these are nearly the same. Places that err alike
+/// wherever the marker lies alike in its pixels make a look that is distorted alike, from which every frame gets its
+/// old place back; the course of a motion from pixel to pixel does not err with them.
+std::vector<std::optional<TemplateFit>> TemplateLook::on_course() const {
+  constexpr double kMostOffCourse_px = 0.3;  // farther off, it is no error of this kind
+  std::vector<std::optional<TemplateFit>> fits = fits_;
+  const std::vector<PlaceInFrame> all = places();
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (!fits[k]) continue;
+    const auto expected = place_by_neighbours(all, clock_[k], true);
+    if (expected && cv::norm(*expected - fits[k]->centre) < kMostOffCourse_px) fits[k]->centre = *expected;
+  }
+  return fits;
 }
 
 /// Counts the frames that the camera lost. A window without a fit has the clock of the fit before it.
@@ -258,7 +276,8 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
   if (!roughness || *roughness > kRoughestPath_px || usual_rms_ > kMostResidual * look_->contrast())
     return std::nullopt;
   if (is_on_lattice(places(), &cv::Point2d::x) || is_on_lattice(places(), &cv::Point2d::y)) return std::nullopt;
-  if (look_->share_at_outline() < kLeastAtOutline) return std::nullopt;
+  const bool by_outline = kind_ == RoughTrack::of_outline;
+  if (!by_outline && look_->share_at_outline() < kLeastAtOutline) return std::nullopt;
   TrackedMarker tracked;
   tracked.method = MarkerMethod::centroid;
   for (std::size_t k = 0; k < fits_.size(); ++k) {
@@ -271,17 +290,19 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
     tracked.sightings.push_back({frames_[k], marker.centre.x, marker.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
-  if (has_own_centre_) tracked.body = MarkerBody::disc;  // a pattern; the shading of a sphere has no such centre
+  if (has_own_centre_ || by_outline) tracked.body = MarkerBody::disc;  // flat; no shading of a sphere has such a centre
   using What = MarkerMeasuredBy::What;
-  tracked.notes.emplace_back(MarkerMeasuredBy{has_own_centre_ ? What::own_centre : What::own_look});
+  tracked.notes.emplace_back(MarkerMeasuredBy{by_outline        ? What::own_look
+                                              : has_own_centre_ ? What::own_centre
+                                                                : What::own_look});
   return tracked;
 }
 
 }  // namespace
 
 std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const std::vector<FrameWindow>& windows,
-                                              const ShapeAt& shape_at) {
-  return TemplateLook(rough, shape_at).marker(windows);
+                                              const ShapeAt& shape_at, RoughTrack kind) {
+  return TemplateLook(rough, shape_at, kind).marker(windows);
 }
 
 }  // namespace glidelab::core

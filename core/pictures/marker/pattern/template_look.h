@@ -11,6 +11,12 @@
 
 namespace glidelab::core {
 
+/// What is known of a rough track.
+enum class RoughTrack {
+  of_parts,   ///< it may lie on any part of the object
+  of_outline  ///< it is that of the centre of an outline of the stated size (framed_square.h), which the look keeps
+};
+
 /// Finds the look and the positions in all windows around a rough track alternately, eight times. Frames in which the
 /// marker was lost are fitted outwards from their neighbours. If the guesses lie on different parts of the object in
 /// different frames, their common look is none of it: the look of a short stretch then spreads to the other frames, and
@@ -19,6 +25,6 @@ namespace glidelab::core {
 /// object moves, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than before
 /// (or in fewer than eight).
 std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const std::vector<FrameWindow>& windows,
-                                              const ShapeAt& shape_at);
+                                              const ShapeAt& shape_at, RoughTrack kind = RoughTrack::of_parts);
 
 }  // namespace glidelab::core
