@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kGroups = 12;
 constexpr double kPixelsCountedAsOne = 2.0 * std::numbers::pi * 1.5;
 constexpr double kMostRelativeSd = 0.1;
-constexpr double kShareTakenUp = 0.02;  // of a standard deviation: half of what three fitted numbers take from a patch
+constexpr double kShareTakenUp = 0.02;  // of a standard deviation: a fit takes more from some pixels than from others
 
 }  // namespace
 

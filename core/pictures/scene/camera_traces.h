@@ -24,7 +24,7 @@ using PixelChanges = std::vector<PixelChange>;
 /// Pixels are put into groups of equal ranges of level. A pixel's variance is half the mean square of its changes from
 /// one frame to the next. How well a group's is known allows for what pixels blurred by 1 px have in common with their
 /// neighbours (squares correlate by exp(-d²/2) at d px: 2 pi count as one) and successive changes (1/4 each: 1.5), and
-/// for 2 % that fitting a patch's light and place takes up.
+/// for 2 % by which fitting a patch's light and place takes more from some pixels than from others.
 ///
 /// Of the (blurred) pixels; a group whose relative standard deviation exceeds a tenth is left out.
 std::vector<NoiseAtLevel> noise_by_level(const PixelChanges& pixels);

@@ -107,8 +107,9 @@ SceneWatch::Terms SceneWatch::derivatives_at(const Patch& patch, std::size_t pix
   const double z = (2.0 * row + 1.0) / kPatchSide - 1.0;
   // Less its mean, so that the gain is that of the whole patch.
   constexpr double kMeanSquare = 1.0 / 3.0;
-  return {patch.reference[pixel], -patch.gu[pixel], -patch.gv[pixel], z * patch.reference[pixel],
-          (z * z - kMeanSquare) * patch.reference[pixel]};
+  const double level = patch.reference[pixel], contrast = level - patch.mean, curve = z * z - kMeanSquare;
+  return {level,         -patch.gu[pixel], -patch.gv[pixel], z * level,
+          curve * level, contrast,         z * contrast,     curve * contrast};
 }
 
 /// Moves a patch's reference to the present position of the scene in the image.
@@ -131,6 +132,8 @@ void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   patch.reference = flat(whole);
   patch.gu = flat(gu);
   patch.gv = flat(gv);
+  patch.mean = 0.0;
+  for (const float value : patch.reference) patch.mean += value / static_cast<double>(patch.reference.size());
   Normal normal = Normal::zeros();
   for (std::size_t i = 0; i < patch.reference.size(); ++i) {
     const Terms row = derivatives_at(patch, i);
@@ -142,6 +145,29 @@ void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   patch.structure =
       cv::Matx22d(patch.inverse(1, 1), patch.inverse(1, 2), patch.inverse(2, 1), patch.inverse(2, 2)).inv();
   patch.gain_variance = patch.inverse(0, 0);
+  patch.noise_left = noise_left_by_fit(patch);
+}
+
+/// The part of the blurred noise's variance that a fit leaves in a patch, 1 - tr(P K) / tr(K): K is the covariance of
+/// noise blurred by B, K = B B^T, and P = D inverse D^T projects onto the terms D.
+double SceneWatch::noise_left_by_fit(const Patch& patch) {
+  constexpr int kRim = 2;  // that noise from outside the patch is blurred across
+  std::vector<cv::Mat_<double>> terms;
+  for (int k = 0; k < kTerms; ++k) {
+    terms.emplace_back(kPatchSide + 2 * kRim, kPatchSide + 2 * kRim, 0.0);
+    for (std::size_t i = 0; i < patch.reference.size(); ++i) {
+      const int at = static_cast<int>(i);
+      terms.back()(kRim + at / kPatchSide, kRim + at % kPatchSide) = derivatives_at(patch, i)[k];
+    }
+    cv::GaussianBlur(terms.back(), terms.back(), {5, 5}, 1.0, 1.0, cv::BORDER_CONSTANT);
+  }
+  double taken = 0.0;
+  for (int k = 0; k < kTerms; ++k) {
+    for (int j = 0; j < kTerms; ++j) {
+      taken += patch.inverse(k, j) * terms[static_cast<std::size_t>(k)].dot(terms[static_cast<std::size_t>(j)]);
+    }
+  }
+  return 1.0 - taken / (kPatchSofter * kPatchSofter * static_cast<double>(patch.reference.size()));
 }
 
 void SceneWatch::make_reference() {
@@ -157,17 +183,17 @@ void SceneWatch::make_reference() {
     patch.around /= static_cast<float>(early_.size());
     cv::GaussianBlur(patch.around, patch.around, {5, 5}, 1.0);
     shift_reference(patch, {});
-    // The usual residuals are those of the first frames themselves; what passes by then makes a patch of no use.
-    double sum = 0.0, count = 0.0;
+    // The usual residuals are those of the first frames themselves, whatever the light did in them; what passes by then
+    // makes a patch of no use.
+    double sum = 0.0;
     for (const cv::Mat& frame : early_) {
-      const std::vector<float> pixels = soft_pixels_of(frame, patch.place);
-      for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const double off = pixels[i] - patch.reference[i];
-        sum += off * off;
-        count += 1.0;
-      }
+      fit_terms(patch, soft_pixels_of(frame, patch.place));
+      for (const float off : patch.residual) sum += off * off;
     }
-    patch.usual_rms = std::sqrt(sum / count / (1.0 - 1.0 / static_cast<double>(early_.size())));
+    const double frames = static_cast<double>(early_.size());
+    const double count = frames * static_cast<double>(patch.reference.size());
+    patch.usual_rms = std::sqrt(sum / count / (1.0 - 1.0 / frames));
+    patch.residual.clear();
   }
   std::vector<double> usual;
   for (const Patch& patch : patches_) usual.push_back(patch.usual_rms);
@@ -230,32 +256,40 @@ void SceneWatch::finish(ImageRecord& record) {
 }
 
 // What follows compares a frame with the references.
-/// Gains and shift of a patch that nothing passes through; the residuals stay in the patch.
-std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::vector<float>& pixels) const {
+/// The best terms of a patch in a frame; the residuals stay in the patch.
+SceneWatch::Terms SceneWatch::fit_terms(Patch& patch, const std::vector<float>& pixels) {
   const std::size_t n = patch.reference.size();
-  std::swap(patch.before_that, patch.before);
-  std::swap(patch.before, patch.residual);
   patch.residual.assign(n, 0.0F);
-  if (pixels.empty()) return std::nullopt;
   Terms right = Terms::all(0.0);
   for (std::size_t i = 0; i < n; ++i) {
     const double off = pixels[i] - patch.reference[i];
     right += off * derivatives_at(patch, i);
   }
   const Terms by = patch.inverse * right;
-  double rest = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double model = by.dot(derivatives_at(patch, i));
     patch.residual[i] = static_cast<float>(pixels[i] - patch.reference[i] - model);
-    rest += patch.residual[i] * patch.residual[i];
   }
+  return by;
+}
+
+/// Gains and shift of a patch that nothing passes through.
+std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::vector<float>& pixels) const {
+  const std::size_t n = patch.reference.size();
+  std::swap(patch.before_that, patch.before);
+  std::swap(patch.before, patch.residual);
+  patch.residual.assign(n, 0.0F);
+  if (pixels.empty()) return std::nullopt;
+  const Terms by = fit_terms(patch, pixels);
+  double rest = 0.0;
+  for (const float off : patch.residual) rest += off * off;
   // Interpolation never quite reproduces fine structure that has moved by part of a pixel.
   const double moved = std::min(1.0, std::hypot(shift_.x + by[1], shift_.y + by[2]));
   const double steep = std::sqrt((patch.structure(0, 0) + patch.structure(1, 1)) / static_cast<double>(n));
   const double usual = std::hypot(std::max(patch.usual_rms, kPatchNoise), kInterpolationError * steep * moved);
   const double mean = rest / static_cast<double>(n);
   if (std::sqrt(mean) > kMostRelativeResidual * usual) return std::nullopt;
-  return Moved{&patch, by, mean};
+  return Moved{&patch, by, mean / patch.noise_left};
 }
 
 /// A patch that moves differently from half of the informative patches does not belong to the scene.
@@ -327,10 +361,10 @@ void SceneWatch::add_changes(Patch& patch) {
   patch.changed.resize(patch.residual.size(), 0.0);
   patch.changes += 1.0;
   for (std::size_t i = 0; i < patch.residual.size(); ++i) {
-    const double change = patch.residual[i] - patch.before[i];
-    patch.changed[i] += change * change;
-    change_one_ += change * change;
-    change_two_ += std::pow(patch.residual[i] - patch.before_that[i], 2);
+    const double change = std::pow(patch.residual[i] - patch.before[i], 2) / patch.noise_left;
+    patch.changed[i] += change;
+    change_one_ += change;
+    change_two_ += std::pow(patch.residual[i] - patch.before_that[i], 2) / patch.noise_left;
   }
   changes_ += patch.residual.size();
 }

@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
+#include "core/pictures/scene/lamp_flicker.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -104,8 +107,86 @@ TEST_CASE("Light that flickers before a rolling shutter moves no scene, however 
   }
 }
 
+TEST_CASE("Light that flickers before a camera with a tone curve moves no scene, and is found", "[scene]") {
+  // Codes of sRGB: not proportional to the light, a change of which is a gain and an offset. Lamps of 100 Hz, ±25 %,
+  // rows every 25 µs; the light falls off from the left, over weak structure.
+  constexpr double kFilm_hz = 60.0, kLine_s = 2.5e-5, kFlicker_hz = 100.0, kDepth = 0.25;
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0.0, 0.5);
+  core::SceneWatch watch;
+  for (int k = 0; k < 90; ++k) {
+    cv::Mat_<unsigned char> image(kHeight, kWidth);
+    for (int v = 0; v < kHeight; ++v) {
+      const double t = k / kFilm_hz + kLine_s * v;
+      const double light = 1.0 + kDepth * std::cos(2.0 * std::numbers::pi * kFlicker_hz * t);
+      for (int u = 0; u < kWidth; ++u) {
+        const double bench = 0.45 - 0.0013 * u + 0.009 * (std::sin(0.21 * u + 0.1 * v) + std::sin(0.17 * v));
+        const double code = 255.0 * (1.055 * std::pow(light * bench, 1.0 / 2.4) - 0.055);
+        image(v, u) = cv::saturate_cast<unsigned char>(code + noise(random));
+      }
+    }
+    watch.add(image, k / kFilm_hz);
+  }
+  const auto record = std::make_shared<core::ImageRecord>();
+  watch.finish(*record);
+  REQUIRE(record->scene.size() == 90);
+  for (const core::SceneLook& look : record->scene) {
+    REQUIRE(look.sd_u_px > 0.0);
+    // Half a patch's rows take 0.19 rad of the light: its cubic part is 0.25 * 0.19³/6/4 of 150 codes, 0.01 codes
+    // beside slopes of 0.4 codes a pixel.
+    CHECK(std::abs(look.u_px) < 5.0 * look.sd_u_px + 0.03);
+    CHECK(std::abs(look.v_px) < 5.0 * look.sd_v_px + 0.03);
+  }
+  core::CameraSettings camera;
+  camera.frame_rate_hz = kFilm_hz;
+  camera.shutter = core::Shutter::rolling;
+  camera.line_readout_s = kLine_s;
+  camera.exposure_s = 0.0;
+  const std::optional<core::LightFlicker> flicker = core::find_flicker({record}, camera);
+  REQUIRE(flicker);
+  CHECK(flicker->f_hz == 100.0);
+  CHECK(std::abs(flicker->seen_hz - 20.0) < 0.1);
+  // The codes change by (1 + 0.055 * 255 / code) / 2.4 of the light's change, 0.45 of it for 160 codes; a band of 40
+  // rows, 0.63 rad, averages over 2 % of it.
+  CHECK(std::abs(flicker->depth - 0.45 * kDepth) < 0.1 * kDepth);
+}
+
+TEST_CASE("A tone curve that changes during the clip moves no scene", "[scene]") {
+  // A glow that falls off from the left: where the contrast lies beside its mean, an offset looks like a shift to a fit
+  // that knows of a gain alone. The image is so narrow that all its patches are alike.
+  constexpr int kNarrow = 60;
+  std::mt19937 random(13);
+  std::normal_distribution<double> noise(0.0, 0.5);
+  core::SceneWatch watch;
+  for (int k = 0; k < 100; ++k) {
+    const double gamma = 1.0 + 0.1 * std::sin(2.0 * std::numbers::pi * k / 100.0);
+    const double offset = 8.0 * std::sin(2.0 * std::numbers::pi * k / 70.0);
+    cv::Mat_<unsigned char> image(kHeight, kNarrow);
+    for (int v = 0; v < kHeight; ++v) {
+      for (int u = 0; u < kNarrow; ++u) {
+        const double level = 60.0 + 40.0 * std::exp((12.0 - u) / 12.0) + 4.0 * std::sin(0.4 * v);
+        const double code = 255.0 * std::pow(level / 255.0, gamma) + offset;
+        image(v, u) = cv::saturate_cast<unsigned char>(code + noise(random));
+      }
+    }
+    watch.add(image, k / kRate_hz);
+  }
+  core::ImageRecord record;
+  watch.finish(record);
+  REQUIRE(record.scene.size() == 100);
+  for (const core::SceneLook& look : record.scene) {
+    REQUIRE(look.sd_u_px > 0.0);
+    // The curve's second order, 255 g (g - 1) x^(g-2) / 2 * 0.07² for levels of x = 0.3 ± 0.07 in a patch, is 0.2 codes
+    // beside slopes of up to 3 codes a pixel.
+    CHECK(std::abs(look.u_px) < 5.0 * look.sd_u_px + 0.07);
+    CHECK(std::abs(look.v_px) < 5.0 * look.sd_v_px + 0.07);
+  }
+}
+
 TEST_CASE("The light's change is measured in each band of rows, whatever passes", "[scene]") {
-  const auto light = [](double t) { return 1.0 + 0.02 * std::cos(2.0 * std::numbers::pi * 10.0 * t); };
+  // The larger one has changed in the first frames by more than what passes changes.
+  const double depth = GENERATE(0.02, 0.25);
+  const auto light = [&](double t) { return 1.0 + depth * std::cos(2.0 * std::numbers::pi * 10.0 * t); };
   const core::ImageRecord record = watched({[](double) { return 0.0; }, light, true}, 100);
   double start = 0.0;
   for (int k = 0; k < 6; ++k) start += light(k / kRate_hz) / 6.0;
