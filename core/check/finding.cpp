@@ -63,7 +63,8 @@ struct FaultSentence {
     return {fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
                         "motion shows",
                         of.noise_m, of.distance_m),
-            "see whether the tracker or the sensor followed the body, and record again with less scatter"};
+            "see whether the body moved, and whether the tracker or the sensor followed it; record again with less "
+            "scatter"};
   }
 };
 

@@ -268,7 +268,7 @@ template <typename Iterator>
 TurningEnd turning_end(Iterator from, Iterator to, double least) {
   TurningEnd end;
   std::size_t i = 0;
-  for (Iterator at = from; at != to && i <= end.size + kFurthestTurn; ++at, ++i) {
+  for (Iterator at = from; at != to && i < end.size + kFurthestTurn; ++at, ++i) {
     if (*at <= least) continue;
     end.turns.push_back(*at);
     end.size = i + 1;
@@ -298,6 +298,7 @@ std::optional<ScatteredEnds> scattered_ends(std::span<const double> t_s, std::sp
   // The last turn is at a place of the body: the first acceleration is that of the second position.
   const std::size_t until = steps.size() - end.size;
   const double usual_step = typical(start.size, until, kTypicalOfSteps);
+  if (!(usual_step > 0.0)) return {};  // a rest, and coarse positions: what moves beside it is no scatter
   const auto scatters = [&](const TurningEnd& of, std::size_t from, std::size_t to) {
     return of.size > 0 && quantile(of.turns, 0.5) > kOverTurn * usual &&
            typical(from, to, 0.5) > kJumpAtEnd * usual_step;

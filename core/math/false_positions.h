@@ -66,7 +66,8 @@ struct ScatteredEnds {
 /// scattered if it has six turns or more, none of them more than four positions from the next; it goes to the last of
 /// them, which is at the body's own place. The median of these turns is above twenty times the acceleration of nine
 /// tenths of the positions between the ends, and the median step above twelve times nine tenths of the steps there, so
-/// that neither a coarse rounding nor a vibration counts; and between the ends lies half of all positions or more.
+/// that neither a coarse rounding nor a vibration counts; and between the ends lies half of all positions or more. None
+/// is scattered beside a rest in which nine tenths of the positions repeat the one before.
 ///
 /// Times rise. None if no end is scattered.
 std::optional<ScatteredEnds> scattered_ends(std::span<const double> t_s, std::span<const double> x);

@@ -139,8 +139,6 @@ double distance_m(const ClipResult& clip) {
 
 void note_statements(std::vector<ConfigurationResult>& results, const std::vector<ClipResult>& clips,
                      double gravity_m_s2) {
-  const bool far =
-      std::ranges::any_of(clips, [](const ClipResult& clip) { return distance_m(clip) > kLongestOfGlider_m; });
   double least_kg = std::numeric_limits<double>::infinity();
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
@@ -151,6 +149,9 @@ void note_statements(std::vector<ConfigurationResult>& results, const std::vecto
       result.notes.emplace_back(MassInGrams{result.mass_kg, least_kg});
     }
     // A mass that stands out against the lightest gets its own remark; here all masses may be in grams.
+    const bool far = std::ranges::any_of(clips, [&](const ClipResult& clip) {
+      return std::ranges::count(result.clips, clip.name) > 0 && distance_m(clip) > kLongestOfGlider_m;
+    });
     if (!far && result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, {}});
     }

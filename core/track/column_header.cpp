@@ -112,16 +112,6 @@ TableColumn column_of(const std::string& text) {
     name = std::string(trimmed(std::string_view(name).substr(0, at)));
     break;
   }
-  // A part of the body, as SLEAP writes it: "thorax.x", "thorax.score".
-  if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0) {
-    const std::string of_part = small.substr(dot + 1);
-    if (of_part == "x" || of_part == "y" || of_part == "score") {
-      column.run = name.substr(0, dot);
-      column.name = of_part;
-      if (of_part != "score" && column.unit.empty()) column.unit = "px";
-      return column;
-    }
-  }
   const auto underscore = name.rfind('_');
   if (column.unit.empty() && underscore != std::string::npos && underscore > 0) {
     const std::string_view tail = std::string_view(name).substr(underscore + 1);
@@ -250,6 +240,22 @@ std::vector<TableColumn> columns_of_body_parts(const std::vector<std::vector<std
   return columns;
 }
 
+/// Parts of a body as SLEAP heads them beside its scores: "thorax.x", "thorax.y", "thorax.score". Pixels, unless a line
+/// of units says otherwise.
+void split_parts(std::vector<TableColumn>& columns) {
+  const auto is_score = [](const TableColumn& column) { return lower(column.name).ends_with(".score"); };
+  if (std::ranges::none_of(columns, is_score)) return;
+  for (TableColumn& column : columns) {
+    const auto dot = column.name.rfind('.');
+    if (dot == std::string::npos || dot == 0 || !column.run.empty()) continue;
+    const std::string of_part = lower(column.name.substr(dot + 1));
+    if (of_part != "x" && of_part != "y" && of_part != "score") continue;
+    column.run = column.name.substr(0, dot);
+    column.name = of_part;
+    if (of_part != "score" && column.unit.empty()) column.unit = "px";
+  }
+}
+
 }  // namespace
 
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
@@ -281,6 +287,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
     if (columns.back().run.empty()) columns.back().run = run;
     if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
   }
+  split_parts(columns);
   return columns;
 }
 

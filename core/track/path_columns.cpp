@@ -77,19 +77,20 @@ bool is_clear(const PathBend& bend) {
 
 void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
                 std::vector<Note>& notes) {
+  const bool pixels = is_pixels(table.columns[y].unit);  // notes have metres
   const PathBend bend = bend_of(path);
   if (!is_clear(bend)) return;
   const bool arc = sagitta_of(path) * bend.length_m > kMostlyArc * bend.range_m;
   if (bend.range_m < kStraightPath * bend.length_m && (arc || bend.slope_deg < kMostTurn_deg)) {
-    notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
+    if (!pixels) notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
     return;
   }
   throw wrong_column(
       table,
-      fmt::format("a curved path: ({}, {}) strays over {:.2g} m across the best straight line, {:.2g} % of its length, "
-                  "and its direction changes by {:.0f}°",
-                  table.columns[x].name, table.columns[y].name, bend.range_m, 100.0 * bend.range_m / bend.length_m,
-                  bend.slope_deg),
+      fmt::format("a curved path: ({}, {}) strays over {:.2g} {} across the best straight line, {:.2g} % of its "
+                  "length, and its direction changes by {:.0f}°",
+                  table.columns[x].name, table.columns[y].name, bend.range_m, pixels ? "px" : "m",
+                  100.0 * bend.range_m / bend.length_m, bend.slope_deg),
       straight_motion(table.columns[y].name));
 }
 
@@ -114,8 +115,7 @@ ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y,
   const PlanePath path = path_of(table.columns[x], other);
   if (path.x_m.size() < kFewestOfPath) return chosen;
   refuse_curve(table, x, y, path);
-  std::vector<Note> in_pixels;  // notes with lengths, which are metres
-  judge_bend(table, x, y, path, pixels ? in_pixels : notes);
+  judge_bend(table, x, y, path, notes);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
   if (upright) {

@@ -371,6 +371,11 @@ std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::
            metres_per(column.unit).has_value();
   };
   if (asked.empty() && std::ranges::any_of(table.columns, is_length)) return {};
+  // A quantity of one letter may be the distance: whoever wrote it should say.
+  const auto is_letter = [](const TableColumn& column) {
+    return column.unit.empty() && column.name.size() == 1 && !is_time_column(column) && !is_speed(column);
+  };
+  if (asked.empty() && std::ranges::any_of(table.columns, is_letter)) return {};
   const std::vector<std::size_t> found = columns_that(table, [](const TableColumn& column) {
     return is_speed(column) && (!is_time_column(column) || is_own_speed(column));
   });

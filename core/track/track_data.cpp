@@ -224,8 +224,9 @@ void count_downwards(const std::vector<TrackData*>& tracks) {
 
 void refuse_unneeded(const ImageUnits& units, const std::string& file, const std::string& found) {
   if (!units.for_this_table || (!units.frame_rate_hz && !units.px_per_m)) return;
-  throw base::InputError(base::Issue{file, 0, units.frame_rate_hz ? "--frame-rate" : "--px-per-m", found,
-                                     "it for a table that counts frames or pixels only"});
+  throw base::InputError(
+      base::Issue{file, 0, units.frame_rate_hz ? "--frame-rate" : "--px-per-m", found,
+                  "no such option: only a table that counts frames, or has its lengths in pixels, needs it"});
 }
 
 namespace {
@@ -236,33 +237,41 @@ struct OfImages {
 };
 
 /// What of `units` the chosen columns need. InputError for what was stated for this table and is not needed.
-OfImages needed_of(const ImageUnits& units, const std::string& file, const TableColumn& x, const TableColumn& t) {
+OfImages needed_of(const ImageUnits& units, const std::string& file, const TableColumn& x, const TableColumn& t,
+                   bool of_speeds) {
   OfImages needed;
-  if (is_frame_column(t)) needed.frame_rate_hz = units.frame_rate_hz.value_or(0.0);
-  if (x.unit.empty() || is_pixels(x.unit)) needed.px_per_m = units.px_per_m.value_or(0.0);
+  const bool frames = is_frame_column(t);
+  if (frames) needed.frame_rate_hz = units.frame_rate_hz.value_or(0.0);
+  // A scale of a folder, which may be that of its films, is not that of a table with times of its own.
+  const bool in_pixels = is_pixels(x.unit) || (x.unit.empty() && (units.for_this_table || frames));
+  if (in_pixels && !of_speeds) needed.px_per_m = units.px_per_m.value_or(0.0);
   if (units.frame_rate_hz && needed.frame_rate_hz == 0.0) {
     refuse_unneeded({units.frame_rate_hz, {}, 0.0, units.for_this_table}, file, fmt::format("times (\"{}\")", t.text));
   }
   if (units.px_per_m && needed.px_per_m == 0.0) {
-    refuse_unneeded({{}, units.px_per_m, 0.0, units.for_this_table}, file, fmt::format("lengths in {}", x.unit));
+    refuse_unneeded({{}, units.px_per_m, 0.0, units.for_this_table}, file,
+                    of_speeds ? fmt::format("speeds (\"{}\")", x.text) : fmt::format("lengths in {}", x.unit));
   }
   return needed;
 }
 
-/// Empties the rows of x in which its own likelihood is low, with a note.
-void leave_out_unlikely(ColumnTable& table, std::size_t place, std::vector<Note>& notes) {
-  const auto certainty = std::ranges::find_if(table.columns, [&](const TableColumn& column) {
-    return is_likelihood_column(column) && column.run == table.columns[place].run;
-  });
-  if (certainty == table.columns.end()) return;
-  UnlikelyLeftOut out{certainty->text, 0, kLeastLikelihood};
-  for (std::size_t row = 0; row < table.line.size(); ++row) {
-    std::optional<double>& value = table.columns[place].values[row];
-    if (!value || !certainty->values[row] || *certainty->values[row] >= kLeastLikelihood) continue;
-    value.reset();
-    ++out.rows;
+/// Empties the positions of each body where its own likelihood is low. How many of each column.
+std::vector<UnlikelyLeftOut> leave_out_unlikely(ColumnTable& table) {
+  std::vector<UnlikelyLeftOut> out(table.columns.size());
+  for (const TableColumn& certainty : table.columns) {
+    if (!is_likelihood_column(certainty)) continue;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      TableColumn& column = table.columns[c];
+      if (column.run != certainty.run || !(is_place_column(column) || is_height_column(column))) continue;
+      out[c] = {certainty.text, 0, kLeastLikelihood};
+      for (std::size_t row = 0; row < table.line.size(); ++row) {
+        if (!column.values[row] || !certainty.values[row] || *certainty.values[row] >= kLeastLikelihood) continue;
+        column.values[row].reset();
+        ++out[c].rows;
+      }
+    }
   }
-  if (out.rows > 0) notes.emplace_back(out);
+  return out;
 }
 
 }  // namespace
@@ -274,19 +283,20 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   TrackData track;
   if (!table.sheet.empty()) track.notes.emplace_back(SheetTaken{table.sheet});
   const FrameNumbers frame_numbers = units.frame_rate_hz ? FrameNumbers::are_times : FrameNumbers::are_no_times;
+  const std::vector<UnlikelyLeftOut> unlikely = leave_out_unlikely(table);
   const std::optional<ChosenColumns> of_speeds =
       speeds == SpeedsAlone::taken ? choose_speeds(table, column, frame_numbers) : std::nullopt;
   const ChosenColumns chosen = of_speeds ? *of_speeds : choose_columns(table, column, frame_numbers, track.notes);
-  leave_out_unlikely(table, chosen.place, track.notes);
+  if (unlikely[chosen.place].rows > 0) track.notes.emplace_back(unlikely[chosen.place]);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
   if (is_sensor_column(x)) track.sensor_column = x.text;
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
-  const OfImages of_images = needed_of(units, table.file, x, t);
+  const OfImages of_images = needed_of(units, table.file, x, t, of_speeds.has_value());
   const double metres = downhill.value_or(1) * (of_speeds                  ? metres_per_second_of(table, x, track.notes)
                                                 : of_images.px_per_m > 0.0 ? 1.0 / of_images.px_per_m
                                                                            : metres_of(table, x, track.notes));
-  const bool like_x = y.unit.empty() || y.unit == x.unit || across.column == chosen.place;
+  const bool like_x = y.unit.empty() || is_pixels(y.unit) || across.column == chosen.place;
   const double y_metres = like_x ? metres : downhill.value_or(1) * metres_of(table, y, track.notes);
   const double seconds =
       of_images.frame_rate_hz > 0.0 ? 1.0 / of_images.frame_rate_hz : seconds_of(table, t, track.notes);

@@ -95,8 +95,7 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
   }
   if (!std::isfinite(best.cost)) {
     throw base::NumericalError(
-        "the nominal model cannot be fitted to these positions: the fit makes no progress from any of four starting "
-        "points");
+        "the nominal model cannot be fitted to these positions: the fit makes no progress from any starting point");
   }
   return best;
 }

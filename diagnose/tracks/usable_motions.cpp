@@ -50,7 +50,7 @@ void add_contradictions(const core::AnalysisResults& results, const std::vector<
                       fmt::format("x that seems to be positive uphill: the motion gives an inclination of {:.2f}°, and "
                                   "{:.2f}° is stated",
                                   off->deg, off->stated.deg),
-                      "x that rises downhill: state downhill = \"-X\" in experiment.toml, or the inclination with the "
+                      "x that rises downhill: the opposite downhill in experiment.toml, or the inclination with the "
                       "other sign"});
   }
 }

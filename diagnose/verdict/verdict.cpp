@@ -288,11 +288,6 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   }
-  if (diagnosis.verdict == Verdict::effect && best != nullptr && shows_in_images_alone(*best) &&
-      !diagnosis.limits.driving.empty()) {  // what images show beside it explains no negative friction
-    diagnosis.unknown = std::max(diagnosis.unknown, kUnknownIfLess);
-    diagnosis.verdict = Verdict::unknown;
-  }
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     const MotionFit* sized = noise_alone != nullptr ? &noise_alone->sized

@@ -265,8 +265,7 @@ void VerdictWithCauses::put_causes_in_order() {
 }
 
 void VerdictWithCauses::size_causes() {
-  // The fit of the whole explanation has other sizes: part of one cause may have gone into another that takes no part
-  // of the gap.
+  // In the fit of the whole explanation a part of one cause may have gone into another that takes none of the gap.
   sized_ = is_settled() ? beside_own_remainder(set_, fit_of_gap()) : BesideRemainder{with(), fit_of(best_)};
   if (const Hypothesis* sized = is_settled() ? part_with_sizes(sized_.set, sized_.fit, by()) : nullptr) {
     CauseSequence of_sized = sequence_with(*sized);
@@ -318,12 +317,11 @@ bool VerdictWithCauses::viscous_leaves_less() const {
       .viscous_leaves_less();
 }
 
-/// The least probability of an unknown cause, by the sizes of what is named, and by a fit of it that stopped before its
-/// minimum and follows the motion badly.
+/// The least probability of an unknown cause, by the sizes of what is named and by where its fit stopped.
 double VerdictWithCauses::least_unknown() const {
   const bool cut_off = is_settled() && !sized_.fit.converged && sequence_.gap_after > kFollowed;
-  if (cut_off) return kUnknownIfLess;
-  return impossible_ || !empty_.empty() || may_take_nothing(sequence_) ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
+  const bool doubtful = cut_off || impossible_ || !empty_.empty() || may_take_nothing(sequence_);
+  return doubtful ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
 /// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
@@ -366,6 +364,8 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
     first_.none += std::exchange(first_.unknown, 0.0);
   }
   if (!weighed_ && !sequence_.is_gap && !below_noise && !drag_is_known()) move_imperfections_to_none();
+  const bool driven = in_images && !limits_of(set_, nominal()).driving.empty();  // which no image explains
+  if (driven) set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
   const NoiseAlone alone = noise_alone();
   Diagnosis diagnosis =
       verdict_of(set_, first_, std::move(images), (by_air_ || resized_) && sequence_.is_gap ? &alone : nullptr);

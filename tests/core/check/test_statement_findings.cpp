@@ -260,6 +260,7 @@ TEST_CASE("a fall in slow motion is found by the acceleration with which it begi
 TEST_CASE("a large mass looks like grams unless what moves runs as far as a sledge or a car") {
   core::ConfigurationResult result;
   result.mass_kg = 80.0;
+  result.clips = {"run"};
   result.incline_assumed = true;
   const auto notes_at = [&](const core::ClipResult& clip) {
     std::vector<core::ConfigurationResult> results{result};
@@ -268,6 +269,7 @@ TEST_CASE("a large mass looks like grams unless what moves runs as far as a sled
   };
   core::ClipResult of_positions, of_speeds;
   of_speeds.speed_noise_m_s = 0.1;
+  of_positions.name = of_speeds.name = "run";
   for (int i = 0; i <= 10; ++i) {
     core::MotionPoint point;
     point.t_s = i;

@@ -1,5 +1,6 @@
 #include "core/math/false_positions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -196,4 +197,6 @@ TEST_CASE("a coarse rounding, a bounce, outliers, a vibration and noise througho
   CHECK_FALSE(ends_of(60.0, [](int i, double t) { return 0.1 * t + (i == 2 ? 0.5 : 0.0); }));
   CHECK_FALSE(ends_of(1000.0, [](int, double t) { return 0.1 * t + (t < 0.1 ? 1e-3 * std::sin(600.0 * t) : 0.0); }));
   CHECK_FALSE(ends_of(60.0, [&](int, double t) { return 0.1 * t + 0.3 * noise(random); }));
+  // A rest for most of the recording, then a motion in coarse steps.
+  CHECK_FALSE(ends_of(240.0, [](int, double t) { return 6e-3 * std::round(std::max(0.0, t - 1.0) / 6e-3); }));
 }

@@ -80,6 +80,25 @@ TEST_CASE("a table of DeepLabCut is read in its frames and pixels, without what 
   CHECK(runs[1].label == "hand");
 }
 
+TEST_CASE("what a table of one body is not sure of takes no part in the choice of its path") {
+  std::string text = "scorer,net,net,net\nbodyparts,cart,cart,cart\ncoords,x,y,likelihood\n";
+  for (int i = 0; i < kRows; ++i) {
+    text += fmt::format("{},{:.3f},240,0.99\n", 7 + i, 50.0 + kPxPerM * place_m(i));
+    if (i % 6 == 3) text += fmt::format("{},{},{},0.1\n", 7.5 + i, (97 * i) % 640, 20 * i);  // all over the image
+  }
+  const core::TrackData track = Made(text).read(units());
+  check_motion(track);
+  CHECK(tests::note_of<core::SlantedPath>(track.notes) == nullptr);
+}
+
+TEST_CASE("a folder's scale, which may be that of its films, leaves a table with times in metres") {
+  std::string text = "t,x\n";
+  for (int i = 0; i < kRows; ++i) text += fmt::format("{},{:.6f}\n", (7 + i) / kRate_hz, place_m(i));
+  core::ImageUnits of_folder = units();
+  of_folder.for_this_table = false;
+  check_motion(Made(text).read(of_folder));
+}
+
 TEST_CASE("the animals of a table of DeepLabCut are told apart") {
   std::string text =
       "scorer,net,net,net,net\nindividuals,left,left,right,right\nbodyparts,cart,cart,cart,cart\n"
