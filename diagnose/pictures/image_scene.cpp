@@ -199,14 +199,33 @@ Drift slow_drift(const Series& series) {
   return {*high - *low - 2.85 * sd, 0.82 * sd};
 }
 
+/// The slope of the straight line through a series, per second.
+double slope_of(const Series& series) {
+  const double n = static_cast<double>(series.value.size());
+  double t_mean = 0.0, value_mean = 0.0, tt = 0.0, tv = 0.0;
+  for (std::size_t i = 0; i < series.value.size(); ++i) {
+    t_mean += series.t_s[i] / n;
+    value_mean += series.value[i] / n;
+  }
+  for (std::size_t i = 0; i < series.value.size(); ++i) {
+    tt += std::pow(series.t_s[i] - t_mean, 2);
+    tv += (series.t_s[i] - t_mean) * (series.value[i] - value_mean);
+  }
+  return tt > 0.0 ? tv / tt : 0.0;
+}
+
 }  // namespace
 
 void add_sway(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const double least_px = least_sway_px(clips);
   std::vector<Series> series;
   Drift drift;
+  double speed_m_s = 0.0;  // of the drift, along the motion
   for (const FilmedClip& clip : clips) {
     std::vector<Series> both = drift_of(clip);
+    if (clip.px_per_m > 0.0) {
+      speed_m_s = std::max(speed_m_s, std::abs(slope_of(both[clip.down ? 1 : 0])) / clip.px_per_m);
+    }
     for (std::size_t axis = 0; axis < both.size(); ++axis) {
       if (both[axis].value.empty()) continue;
       ImageCurve curve;
@@ -236,7 +255,7 @@ void add_sway(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   } else if (of_drift > kSeenInImages) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
-    finding.fact = image::Sway{image::Sway::How::drifts, drift.size, 0.0};
+    finding.fact = image::Sway{image::Sway::How::drifts, drift.size, 0.0, speed_m_s};
   } else {
     finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
     finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};

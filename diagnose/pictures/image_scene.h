@@ -14,7 +14,8 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
 
 /// Whether the camera moves: whether the fixed scene sways or drifts in the image, or stays in place. Patches are
 /// trusted to 0.02 px. A wave is searched for in both directions of all clips. A drift is the range of the means of
-/// eight parts of a clip beyond that of noise alone.
+/// eight parts of a clip beyond that of noise alone; its speed along the motion, by which speeds are wrong, is the
+/// slope of a straight line through a clip.
 void add_sway(const std::vector<FilmedClip>& clips, ImageEvidence& evidence);
 
 /// Log likelihood ratio of the fixed scene's motion: for a camera that sways by this (along the motion, in metres), and

@@ -149,6 +149,16 @@ void scale_lengths(RecoveredSet& of, const ScaleFactor& by) {
   for (Recovered* const one : {&of.alpha_rad, &of.mu, &of.v_lim_m_s}) one->known &= std::isfinite(one->value);
 }
 
+/// A camera that drifts by d adds d to every speed: by as much the terminal velocity is wrong, and g sin(alpha) by
+/// d |a'(v)|, for the drag at the true speed is that found at another.
+void allow_for_drift(RecoveredSet& of, double drift_m_s, double slope_1_s, double gravity_m_s2) {
+  const double of_alpha_rad = drift_m_s * std::abs(slope_1_s) / (gravity_m_s2 * std::cos(of.alpha_rad.value));
+  of.v_lim_m_s.sd = std::hypot(of.v_lim_m_s.sd, drift_m_s);
+  of.v_lim_m_s.known &= of.v_lim_m_s.sd < of.v_lim_m_s.value;
+  of.alpha_rad.sd = std::hypot(of.alpha_rad.sd, of_alpha_rad);
+  of.alpha_rad.known &= of.alpha_rad.sd < kUnknownAngle_rad;
+}
+
 std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
   const RemainderSpace space(set, fit);
   const RemainderSpace::Solution solution = space.solve(sizes);
@@ -236,11 +246,11 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       one.alpha_rad.known = false;
       one.alpha_rad.why = core::unknown::AtItsLimit{};
     }
+    double slope = rate(at);
     if (const std::optional<double> v = terminal_velocity(model_at(at))) {
       // A small change da of the acceleration shifts v_lim by dv = -da/a'(v).
       const double apart = 1e-3 * *v;
-      const double slope =
-          (acceleration(model_at(at), *v + apart) - acceleration(model_at(at), *v - apart)) / (2.0 * apart);
+      slope = (acceleration(model_at(at), *v + apart) - acceleration(model_at(at), *v - apart)) / (2.0 * apart);
       const auto there = [&](const FitPoint& point) { return acceleration(model_at(point), *v); };
       one.v_lim_m_s = found(*v, gradient(there), 1.0 / std::abs(slope));
       one.v_lim_m_s.known &= one.v_lim_m_s.sd < *v;
@@ -248,6 +258,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       one.v_lim_m_s.why = core::unknown::NoBalance{};
     }
     if (set.plain_scale) scale_lengths(one, scale_along_path(model_at(at)));
+    if (set.camera_drift_m_s > 0.0) allow_for_drift(one, set.camera_drift_m_s, slope, set.gravity_m_s2);
     all.push_back(one);
   }
   return all;

@@ -24,6 +24,11 @@
 ///
 /// In images with one stated scale, lengths are multiplied by the mean scale along the path where a lens or a turned
 /// plane makes it differ from place to place (scale_place.h).
+///
+/// Where the images show that the camera drifts at a speed d along the motion (TrackSet::camera_drift_m_s), every speed
+/// is wrong by d, and no fit to the tracks tells it from an inclination: d is added in quadrature to the standard
+/// deviation of the terminal velocity, and d |a'(v)| / (g cos(alpha)) to that of alpha, with a(v) the acceleration.
+/// Tracks are not corrected, since the scene moves in the image as the marker does only at the depth of the motion.
 #pragma once
 
 #include <vector>

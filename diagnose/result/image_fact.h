@@ -44,8 +44,9 @@ struct Flicker {
 /// The fixed scene in the image.
 struct Sway {
   enum class How { shakes, drifts, rests } how = How::rests;
-  double size_px = 0.0;  ///< amplitude, or drift within a clip, or bound
-  double f_hz = 0.0;     ///< of How::shakes
+  double size_px = 0.0;    ///< amplitude, or drift within a clip, or bound
+  double f_hz = 0.0;       ///< of How::shakes
+  double speed_m_s = 0.0;  ///< of How::drifts: the fastest of a clip, along the motion, at the depth of the motion
 };
 
 struct Compression {

@@ -118,6 +118,7 @@ struct TrackSet {
   bool lossy = false;        ///< at least one clip has been through a lossy codec,
   bool handed_on = false;    ///< and one through a codec that predicts images from earlier ones:
   double held_m_s = 0.0;     ///< below this speed such a codec may hold the marker in place (0: none does)
+  double camera_drift_m_s = 0.0;  ///< of a camera that images show to drift: an error of every speed
   std::optional<PositionNoise> position_noise;
   bool through_air = false;   ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
   bool mass_assumed = false;  ///< nobody states a mass: forces, c and k are those of 1 kg

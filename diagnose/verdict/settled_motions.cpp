@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "base/errors.h"
 #include "core/result/estimate.h"
@@ -287,6 +288,9 @@ bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const Moti
 
 void settle_noise(const ImageEvidence& images, TrackSet& set) {
   note_loss(images, set);
+  for (const ImageFinding& finding : images.findings) {
+    if (const auto* sway = std::get_if<image::Sway>(&finding.fact)) set.camera_drift_m_s = sway->speed_m_s;
+  }
   settle(set);
 }
 

@@ -59,7 +59,13 @@ struct ImageSentence {
                            of.size_px, of.f_hz);
       case image::Sway::How::drifts:
         return fmt::format("The fixed scene drifts in the image by {:.2g} px within a clip: the camera moves.",
-                           of.size_px);
+                           of.size_px) +
+               (of.speed_m_s > 0.0
+                    ? fmt::format(" At the depth of the track this is up to {:.2g} mm/s along it: every speed is "
+                                  "uncertain by as much, and the uncertainties of the terminal velocity and of α "
+                                  "include it.",
+                                  1e3 * of.speed_m_s)
+                    : "");
       case image::Sway::How::rests:
         break;
     }

@@ -165,6 +165,22 @@ TEST_CASE("A camera's sway in the tracks is borne out by a scene that sways as m
   CHECK(std::abs(diagnose::camera_sway_support(resting, 0.001 / 400.0, 7.0)) < 1.0);
 }
 
+TEST_CASE("A camera that drifts along the track falsifies speeds by the drift's own, which is told", "[pictures]") {
+  constexpr double kDrift_px_s = 1.2;
+  std::vector<diagnose::FilmedClip> clips = filmed({}, 0.001, 8);
+  for (diagnose::FilmedClip& clip : clips) {
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
+    for (core::SceneLook& look : record->scene) look.u_px -= kDrift_px_s * look.t_s;
+    clip.record = record;
+  }
+  const diagnose::ImageFinding found = finding(diagnose::image_evidence(clips), "camera_motion");
+  REQUIRE(std::holds_alternative<diagnose::image::Sway>(found.fact));
+  const auto& sway = std::get<diagnose::image::Sway>(found.fact);
+  REQUIRE(sway.how == diagnose::image::Sway::How::drifts);
+  // 400 px a metre. The slope through 150 points of 0.02 px over 1.25 s is known to 0.02 sqrt(12/150) / 1.25 px/s.
+  CHECK(std::abs(sway.speed_m_s - kDrift_px_s / 400.0) < 5.0 * 0.0045 / 400.0);
+}
+
 TEST_CASE("A camera that sways in the images alone has no more support than one that sways so in the tracks as well",
           "[pictures]") {
   constexpr double kSway_px = 0.05, kSway_hz = 7.0;

@@ -248,6 +248,30 @@ TEST_CASE(
                                 diagnose::ids::friction_drift, 0.1));
 }
 
+TEST_CASE(
+    "A camera that drifts adds its speed to the uncertainty of the terminal velocity, and what drag makes of it to "
+    "that of alpha") {
+  constexpr double kDrift_m_s = 0.0024;
+  diagnose::TrackSet set = set_of(5, {});
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const diagnose::RecoveredConfiguration still = diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  set.camera_drift_m_s = kDrift_m_s;
+  const diagnose::RecoveredConfiguration drifting = diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  REQUIRE((still.v_lim_m_s.estimate && drifting.v_lim_m_s.estimate && drifting.alpha_deg.estimate));
+  const auto added = [](const core::Quantity& before, const core::Quantity& after) {
+    CHECK(after.estimate->value == before.estimate->value);
+    return std::sqrt(std::pow(after.estimate->sd, 2) - std::pow(before.estimate->sd, 2));
+  };
+  CHECK(added(still.v_lim_m_s, drifting.v_lim_m_s) == Approx(kDrift_m_s).epsilon(1e-6));
+  // At constant speed g sin(alpha) = K/m v + mu g cos(alpha): viscous drag at a speed that is wrong by d. The slope of
+  // the force is a difference over 0.1 % of v.
+  const double cos_alpha = std::cos(still.alpha_deg.estimate->value * base::kRadPerDegree);
+  const double expected_rad = still.k_over_m_1_s.estimate->value * kDrift_m_s / (set.gravity_m_s2 * cos_alpha);
+  CHECK(added(still.alpha_deg, drifting.alpha_deg) == Approx(expected_rad / base::kRadPerDegree).epsilon(1e-3));
+  CHECK(added(still.mu, drifting.mu) == 0.0);
+  CHECK(added(still.k_over_m_1_s, drifting.k_over_m_1_s) == 0.0);
+}
+
 TEST_CASE("an inclination at the limit of its statement is not given as if it were known to a ten-thousandth") {
   // A fall that is said to be vertical and accelerates with 0.9 of gravity: no angle within 3 degrees does that.
   std::vector<tests::MadeLaunch> falls(3, tests::MadeLaunch{0.3, 90.0, 0.0, 0.2});

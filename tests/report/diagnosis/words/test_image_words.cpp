@@ -31,7 +31,8 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
        "changes 2.2 times"},
       {image::Flicker{false, 0.001, 20.0, 20.0}, "does not flicker: no wave above 0.1 %"},
       {image::Sway{How::shakes, 0.4, 7.0}, "sways in the image by ±0.4 px at 7 Hz: the camera shakes."},
-      {image::Sway{How::drifts, 0.4, 0.0}, "drifts in the image by 0.4 px within a clip"},
+      {image::Sway{How::drifts, 0.4, 0.0}, "drifts in the image by 0.4 px within a clip: the camera moves."},
+      {image::Sway{How::drifts, 0.4, 0.0, 0.0024}, "up to 2.4 mm/s along it: every speed is uncertain by as much"},
       {image::Sway{How::rests, 0.02, 0.0}, "at rest: the fixed scene stays within 0.02 px"},
       {image::Compression{true, "H264", 0.5, {}},
        "The file is compressed with loss (H264); steps between pixels are 50.0 % larger at the edges of 8 × 8 blocks "
