@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,18 +30,22 @@ std::string file_of(const core::ClipSetup& setup) {
   return (setup.track.empty() ? setup.file : setup.track).string();
 }
 
-/// What is stated of the direction of a motion, and is wrong for certain: the launch of a clip, and which way x rises.
+/// What is stated of the direction of the motions, and is wrong for certain: the launch of most clips, and which way x
+/// rises.
 void add_contradictions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                         std::vector<base::Issue>& issues) {
+  std::vector<base::Issue> against;
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];
     if (!core::moves_against_launch(clip.against_launch)) continue;
-    issues.push_back({file_of(setups[c]), 0, fmt::format("clip \"{}\"", clip.name),
-                      fmt::format("motion opposite to launched = \"{}\", {:.0f} % of it",
-                                  core::name_of(setups[c].launched), 100.0 * clip.against_launch->share),
-                      "launched of this clip and downhill of its track that agree with the motion; if they are right, "
-                      "state in start_s when the hand lets go"});
+    against.push_back({file_of(setups[c]), 0, fmt::format("clip \"{}\"", clip.name),
+                       fmt::format("motion opposite to launched = \"{}\", {:.0f} % of it",
+                                   core::name_of(setups[c].launched), 100.0 * clip.against_launch->share),
+                       "launched of this clip and downhill of its track that agree with the motion; if they are right, "
+                       "state in start_s when the hand lets go"});
   }
+  // One such clip of several is a slip of its own, and the analysis leaves its motion out.
+  if (2 * against.size() > results.clips.size()) std::ranges::move(against, std::back_inserter(issues));
   for (const core::ConfigurationResult& of : results.configurations) {
     if (of.incline_assumed || of.clips.empty()) continue;
     const auto off = core::incline_contradiction(of, results.gravity_m_s2, core::stated_incline(of));

@@ -118,7 +118,13 @@ TEST_CASE("a diagnosis refuses a motion opposite to its stated launch, as the ch
   clip.against_launch = core::AgainstLaunch{1, {}, 0.6, false};
   CHECK_THROWS_WITH(diagnose::doubtful_units(with_clip(clip), {setup}),
                     Contains("clip \"up\"") && Contains("opposite to launched = \"up\", 60 %") && Contains("downhill"));
-  clip.against_launch->share = 0.1;  // the hand
+  // One of several clips, or a part of a motion, as by a hand, is no reason to refuse all.
+  core::AnalysisResults several = with_clip(clip);
+  core::ClipResult other = clip;
+  other.against_launch.reset();
+  several.clips.push_back(other);
+  CHECK(diagnose::doubtful_units(several, {setup, setup}).empty());
+  clip.against_launch->share = 0.1;
   CHECK(diagnose::doubtful_units(with_clip(clip), {setup}).empty());
 }
 
