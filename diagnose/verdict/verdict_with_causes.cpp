@@ -317,10 +317,9 @@ bool VerdictWithCauses::viscous_leaves_less() const {
       .viscous_leaves_less();
 }
 
-/// The least probability of an unknown cause, by the sizes of what is named and by where its fit stopped.
+/// The least probability of an unknown cause, by the sizes of what is named.
 double VerdictWithCauses::least_unknown() const {
-  const bool cut_off = is_settled() && !sized_.fit.converged && sequence_.gap_after > kFollowed;
-  const bool doubtful = cut_off || impossible_ || !empty_.empty() || may_take_nothing(sequence_);
+  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_);
   return doubtful ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
@@ -412,8 +411,7 @@ void VerdictWithCauses::move_imperfections_to_none() {
   if (!scatter) std::erase_if(seen, [&](std::size_t e) { return first_.effect_probability[e] < kLikelierThanNot; });
   if (names_ && shows_in_gap(best_)) {
     allow_for_remainders(set_, without_, jobs_, first_);
-    const bool sure =
-        std::ranges::any_of(seen, [&](std::size_t e) { return first_.effect_probability[e] > kSureIdle; });
+    const bool sure = first_.none + first_.unknown < 1.0 - kSureIdle;  // whichever of those that look alike
     if (!sure && leaves_quantities(set_, nominal(), fit_of(best_))) empty_.insert(seen.begin(), seen.end());
   }
   const auto is_empty = [this](std::size_t e) { return empty_.contains(e); };

@@ -38,9 +38,7 @@ std::vector<std::size_t> effects_at_end(const MotionFit& fit) {
     const EffectParameter* parameter = globals[g].parameter;
     if (parameter == nullptr || parameter->each != Each::experiment) continue;
     const EffectInfo& info = effect_list()[globals[g].effect];
-    const bool counts = parameter->slot.parameter == info.law.size || parameter->reach == Reach::waves;
-    if (info.search == Search::spread || parameter->open_ended || !counts) continue;
-    if (!found.empty() && found.back() == globals[g].effect) continue;
+    if (info.search == Search::spread || parameter->open_ended || parameter->slot.parameter != info.law.size) continue;
     if (is_at_end(globals[g].range, fit.at.global[static_cast<Eigen::Index>(g)], parameter->absent)) {
       found.push_back(globals[g].effect);
     }

@@ -182,13 +182,13 @@ TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
   CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::check_statements);
 }
 
-TEST_CASE("if a fifth of the motion is set aside, the reader is told how much") {
+TEST_CASE("if a tenth of the motion is set aside, the reader is told how much") {
   const auto made = tests::made_experiment(inclined_launches(), {}, 5, 3e-5, 60);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   CHECK(set.left_out == 0);
   const diagnose::MotionFit fit = diagnose::fit_nominal(set);
   set.moving = 1000;
-  set.left_out = 190;
+  set.left_out = 90;
   CHECK_FALSE(diagnose::limits_of(set, fit).set_aside);
   set.left_out = 210;
   REQUIRE(diagnose::limits_of(set, fit).set_aside);
