@@ -60,11 +60,12 @@ struct FaultSentence {
                             "give positions along a straight line"};
   }
   FaultWords operator()(const LostInNoise& of) const {
-    return {fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
-                        "motion shows",
-                        of.noise_m, of.distance_m),
-            "see whether the body moved, and whether the tracker or the sensor followed it; record again with less "
-            "scatter"};
+    return {
+        fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
+                    "motion shows",
+                    of.noise_m, of.distance_m),
+        "see whether the body moved, and whether the tracker or the sensor followed the body; record again with less "
+        "scatter"};
   }
 };
 

@@ -91,9 +91,4 @@ void add_steady_falls(const std::vector<ClipResult>& clips, double gravity_m_s2,
   }
 }
 
-bool is_steady_fall(const ConfigurationResult& configuration) {
-  return std::ranges::any_of(configuration.notes,
-                             [](const Note& note) { return std::holds_alternative<SteadyFall>(note); });
-}
-
 }  // namespace glidelab::core

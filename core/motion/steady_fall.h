@@ -24,7 +24,4 @@ namespace glidelab::core {
 void add_steady_falls(const std::vector<ClipResult>& clips, double gravity_m_s2,
                       std::vector<ConfigurationResult>& configurations);
 
-/// Whether the falls of a configuration are noted to be at a constant speed, where no drag can be told from the weight.
-bool is_steady_fall(const ConfigurationResult& configuration);
-
 }  // namespace glidelab::core

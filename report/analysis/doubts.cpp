@@ -10,7 +10,6 @@
 
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
-#include "core/motion/steady_fall.h"
 #include "core/result/quantity.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"
@@ -104,7 +103,9 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
       }
     }
     const std::optional<core::SlowFall> fall = core::slow_fall(c, results.gravity_m_s2);
-    if (fall && !core::is_steady_fall(c)) {  // of a constant speed the law says no more, and a note says so
+    const bool steady = std::ranges::any_of(
+        c.notes, [](const core::Note& note) { return std::holds_alternative<core::SteadyFall>(note); });
+    if (fall && !steady) {  // of a constant speed the law says no more, and a note says so
       doubts.push_back(fmt::format("{}: {}.", configuration_name(results, c), slow_fall_words(*fall)));
     }
   }
