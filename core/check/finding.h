@@ -62,8 +62,8 @@ inline LengthUnit likely_unit(double value, double usual_m) {
                                                                      : LengthUnit::millimetres;
 }
 
-/// Metres that a body covers: no track is longer, and what is usual.
-inline constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;
+/// Metres that a body usually covers; kLongestRun_m (core/result/estimate.h) is the most.
+inline constexpr double kUsualRun_m = 1.0;
 /// Positions farther apart make a unit doubtful: in space on an incline of less than 60 degrees, in a fall, in time.
 inline constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0, kSlowFrames_s = 1.0;
 

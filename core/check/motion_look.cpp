@@ -17,6 +17,7 @@
 #include "core/math/quantile.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/result/estimate.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {
@@ -210,10 +211,6 @@ double bend_of(std::span<const MarkerSighting> sightings) {
   const Eigen::VectorXd fit = base::least_squares(design, across);
   return std::abs(fit[2]) / 4.0 / length;  // sagitta of c s² over the unit length of s
 }
-
-}  // namespace
-
-namespace {
 
 double spread_of(std::span<const double> x_m) {
   const Eigen::Map<const Eigen::ArrayXd> x(x_m.data(), static_cast<Eigen::Index>(x_m.size()));

@@ -121,8 +121,6 @@ StatedIncline stated_incline(const ConfigurationResult& configuration) {
 
 namespace {
 
-constexpr double kLongestOfGlider_m = 20.0;
-
 /// By the positions, or by the speeds where nothing else was measured.
 double distance_m(const ClipResult& clip) {
   double least = HUGE_VAL, most = -HUGE_VAL, along = 0.0;
@@ -150,7 +148,7 @@ void note_statements(std::vector<ConfigurationResult>& results, const std::vecto
     }
     // A mass that stands out against the lightest gets its own remark; here all masses may be in grams.
     const bool far = std::ranges::any_of(clips, [&](const ClipResult& clip) {
-      return std::ranges::count(result.clips, clip.name) > 0 && distance_m(clip) > kLongestOfGlider_m;
+      return std::ranges::count(result.clips, clip.name) > 0 && distance_m(clip) > kLongestRun_m;
     });
     if (!far && result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, {}});

@@ -45,8 +45,9 @@ Quantity undetermined(AnyReason why);
 std::optional<AnyReason> why_no_limit_velocity(const Estimate& k_over_m_1_s, unknown::RateNotPositive rate,
                                                const Estimate& a0_m_s2);
 
-/// Laboratory gliders are lighter; masses given in grams instead of kilograms are not.
-inline constexpr double kLargestMass_kg = 20.0;
+/// Laboratory gliders are lighter; masses given in grams instead of kilograms are not. What covers more than a glider's
+/// track, as a sledge or a car does, may be as heavy; or its lengths are in another unit.
+inline constexpr double kLargestMass_kg = 20.0, kLongestRun_m = 20.0;
 inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams instead of kilograms make
                                              ///< 1000
 

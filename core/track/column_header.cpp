@@ -214,10 +214,6 @@ bool names_several_columns(const std::vector<std::string>& line, const std::vect
                       [](const std::string& field) { return is_time_name(column_of(field).name); });
 }
 
-}  // namespace
-
-namespace {
-
 /// The columns of DeepLabCut's tables: frame numbers, then x, y and likelihood of each part of the body, which the line
 /// "bodyparts" names. Empty for any other header.
 std::vector<TableColumn> columns_of_body_parts(const std::vector<std::vector<std::string>>& lines, std::size_t width) {

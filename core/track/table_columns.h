@@ -39,8 +39,9 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
                              std::vector<Note>& notes);
 
 /// The columns of a table that has speeds and no positions, or of which a column of speeds is requested, where `place`
-/// is the one of the speeds; empty for any other table. InputError: several speeds and none requested; no such column;
-/// no or several columns of time.
+/// is the one of the speeds; empty for any other table, and where none is requested for one with a quantity of one
+/// letter without a unit, which may be the distance. InputError: several speeds and none requested; no such column; no
+/// or several columns of time.
 std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked,
                                            FrameNumbers frame_numbers);
 

@@ -48,12 +48,6 @@ double mean_speed(const TrackSet& set) {
   return distance_m / time_s;
 }
 
-/// Whether what drives the falls, up to their weight, is fitted.
-bool is_weight_open(const TrackSet& set) {
-  constexpr double kOpen = 0.5;  // of gravity, its standard deviation
-  return only_falls(set) && set.gravity_sd_m_s2 > kOpen * set.gravity_m_s2 && mean_speed(set) > 0.0;
-}
-
 }  // namespace
 
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
@@ -89,7 +83,7 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     }
   }
   // A body that sinks at one speed may be borne by a liquid, or by a drag that stops it within a few positions.
-  if (is_weight_open(set)) fit_if_better(from_statements(set.gravity_m_s2 / mean_speed(set)));
+  if (set.weight_open && mean_speed(set) > 0.0) fit_if_better(from_statements(set.gravity_m_s2 / mean_speed(set)));
   for (int more = 0; more < kMoreRounds && std::isfinite(best.cost) && !best.converged; ++more) {
     best = fit_motions(set, {}, best.at, late);
   }

@@ -8,6 +8,7 @@
 
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
+#include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 #include "core/pictures/scene/camera_traces.h"
 #include "core/pictures/scene/lamp_flicker.h"
@@ -199,19 +200,15 @@ Drift slow_drift(const Series& series) {
   return {*high - *low - 2.85 * sd, 0.82 * sd};
 }
 
-/// The slope of the straight line through a series, per second.
+/// The slope of the straight line through a series, per second; 0 for a single time.
 double slope_of(const Series& series) {
-  const double n = static_cast<double>(series.value.size());
-  double t_mean = 0.0, value_mean = 0.0, tt = 0.0, tv = 0.0;
-  for (std::size_t i = 0; i < series.value.size(); ++i) {
-    t_mean += series.t_s[i] / n;
-    value_mean += series.value[i] / n;
+  constexpr double kRegular = 1e-12;  // of W Stt
+  if (series.t_s.empty()) return 0.0;
+  core::LineSums sums;
+  for (std::size_t i = 0; i < series.t_s.size(); ++i) {
+    sums.add(1.0, series.t_s[i] - series.t_s.front(), series.value[i]);
   }
-  for (std::size_t i = 0; i < series.value.size(); ++i) {
-    tt += std::pow(series.t_s[i] - t_mean, 2);
-    tv += (series.t_s[i] - t_mean) * (series.value[i] - value_mean);
-  }
-  return tt > 0.0 ? tv / tt : 0.0;
+  return sums.is_regular(kRegular) ? sums.slope() : 0.0;
 }
 
 }  // namespace

@@ -120,6 +120,7 @@ struct TrackSet {
   double held_m_s = 0.0;     ///< below this speed such a codec may hold the marker in place (0: none does)
   double camera_drift_m_s = 0.0;  ///< of a camera that images show to drift: an error of every speed
   std::optional<PositionNoise> position_noise;
+  bool weight_open = false;   ///< what drives the falls, up to their weight, is fitted, as of a body in a liquid
   bool through_air = false;   ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
   bool mass_assumed = false;  ///< nobody states a mass: forces, c and k are those of 1 kg
   bool no_drag = false;       ///< K is held at 0 whatever acts: for what a fall without any drag would do

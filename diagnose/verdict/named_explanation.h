@@ -36,7 +36,7 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
 bool is_function_without_size(const TrackSet& set, const MotionFit& fit, std::size_t effect);
 
 /// Whether an explanation shifts none of the quantities of the nominal model, K, mu and the inclinations, by more than
-/// two standard deviations of its own fit or of the nominal one.
+/// two standard deviations, of its own fit or of the nominal one, whichever is larger.
 bool leaves_quantities(const TrackSet& set, const MotionFit& nominal, const MotionFit& with);
 
 /// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell

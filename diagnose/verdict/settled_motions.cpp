@@ -201,14 +201,13 @@ void note_loss(const ImageEvidence& images, TrackSet& set) {
 
 /// Leaves open what part of its weight drives a body, from 0 to four times gravity at a standard deviation of gravity
 /// itself, where all falls begin far too slowly (core::slow_fall()) and none is too fast for a viscous drag, as in a
-/// liquid. Whether it is open.
-bool open_weight(const core::AnalysisResults& results, TrackSet& set) {
-  const bool slow = !results.configurations.empty() && !set.through_air &&
+/// liquid.
+void open_weight(const core::AnalysisResults& results, TrackSet& set) {
+  set.weight_open = !results.configurations.empty() && !set.through_air &&
                     std::ranges::all_of(results.configurations, [&](const core::ConfigurationResult& configuration) {
                       return core::slow_fall(configuration, results.gravity_m_s2).has_value();
                     });
-  if (slow) set.gravity_sd_m_s2 = set.gravity_m_s2;
-  return slow;
+  if (set.weight_open) set.gravity_sd_m_s2 = set.gravity_m_s2;
 }
 
 }  // namespace
@@ -216,8 +215,8 @@ bool open_weight(const core::AnalysisResults& results, TrackSet& set) {
 TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups) {
   std::vector<DoubtfulUnit> doubtful = doubtful_units(results, setups);
   TrackSet set = track_set(results, setups, true);
-  const bool weight_open = open_weight(results, set);
-  for (DoubtfulUnit& one : doubtful) one.weight_open = weight_open;
+  open_weight(results, set);
+  for (DoubtfulUnit& one : doubtful) one.weight_open = set.weight_open;
   set.notes.insert(set.notes.end(), std::make_move_iterator(doubtful.begin()), std::make_move_iterator(doubtful.end()));
   check(setups, set);
   note_limits(setups, set);

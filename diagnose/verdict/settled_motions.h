@@ -34,7 +34,8 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 bool explains_disputed(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit, const TrackSet& trimmed);
 
 /// Finds the noise of every position from single frames and from what the images show of a codec, and sets outliers
-/// aside. Missing frames are corrected first: a jump is neither noise nor an outlier.
+/// aside. Missing frames are corrected first: a jump is neither noise nor an outlier. Also takes the speed at which the
+/// images show the camera to drift (TrackSet::camera_drift_m_s).
 void settle_noise(const ImageEvidence& images, TrackSet& set);
 
 /// Whether the nominal model, whose fit is `nominal`, would follow the motions far better with the recorded forces

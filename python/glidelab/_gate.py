@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import html
 import json
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, dataclass
 from pathlib import Path
@@ -16,7 +14,7 @@ from ._checks import above_0, file_name, whole
 from ._errors import SystemFailure
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
 from ._outside import Estimator, OutsideRuns, given_command, outside_runs
-from ._results import Written, frame_of, unit_of, words_of
+from ._results import Written, frame_of, put_whole, unit_of, words_of
 from ._shown import html_table
 
 _FEWEST, _MOST = 10, 1000000  # runs, as of the command's --runs
@@ -137,19 +135,9 @@ class Gate(_Told, Written):
             It cannot be written.
         """
         where = Path(file_name("file", file))
-        staged = ""
         try:
-            with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=where.parent, prefix=".glidelab-",
-                                             delete=False) as made:
-                staged = made.name
-                made.write(self.baseline_json)
-            umask = os.umask(0)
-            os.umask(umask)
-            os.chmod(staged, 0o666 & ~umask)  # a temporary file is its owner's alone
-            os.replace(staged, where)
+            put_whole(where.parent, {where.name: self.baseline_json})
         except OSError as error:
-            if staged:
-                Path(staged).unlink(missing_ok=True)
             raise SystemFailure(f"{where}: cannot be written: {error.strerror}") from None
 
     def to_dict(self) -> dict[str, Any]:

@@ -113,6 +113,15 @@ def _cell(value: Any) -> str:
     return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 
 
+def put_whole(folder: Path, files: Mapping[str, str]) -> None:
+    """Writes texts under their names into a folder that is there: each appears whole or not at all. OSError."""
+    with tempfile.TemporaryDirectory(prefix=".glidelab-", dir=folder) as staged:
+        for file, text in files.items():
+            Path(staged, file).write_text(text, encoding="utf-8")
+        for file in files:
+            Path(staged, file).replace(folder / file)
+
+
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
     """Columns as a CSV file, a line for each row."""
     said = io.StringIO()
@@ -170,11 +179,7 @@ class Written(Brief):
         where = Path(file_name("folder", folder, "the name of a folder"))
         try:
             where.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryDirectory(prefix=".glidelab-", dir=where) as staged:
-                for file, text in files.items():
-                    Path(staged, file).write_text(text, encoding="utf-8")
-                for file in files:
-                    Path(staged, file).replace(where / file)
+            put_whole(where, files)
         except OSError as error:
             raise SystemFailure(f"{error.filename or where}: cannot be written: {error.strerror}") from None
 

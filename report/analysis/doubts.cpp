@@ -10,6 +10,7 @@
 
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
+#include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"

@@ -37,7 +37,7 @@ struct BlindOptions {
   bool images = false;     ///< filmed experiments instead of tracks
   bool everyday = false;   ///< tracks with several small imperfections (everyday_case.h)
   int jobs = 1;
-  /// Judged on the same everyday cases. It gets a copy of the experiment folder, alone, before the truth is written.
+  /// Judged on the same everyday cases. It gets a copy of the experiment folder, alone: no truth is in it.
   /// Its answers are not kept: a run that continues asks it about every case again, while the diagnoses stay.
   std::optional<fit::OutsideEstimator> outside = {};
 };

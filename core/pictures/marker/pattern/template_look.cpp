@@ -292,9 +292,7 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
   }
   if (has_own_centre_ || by_outline) tracked.body = MarkerBody::disc;  // flat; no shading of a sphere has such a centre
   using What = MarkerMeasuredBy::What;
-  tracked.notes.emplace_back(MarkerMeasuredBy{by_outline        ? What::own_look
-                                              : has_own_centre_ ? What::own_centre
-                                                                : What::own_look});
+  tracked.notes.emplace_back(MarkerMeasuredBy{has_own_centre_ ? What::own_centre : What::own_look});
   return tracked;
 }
 

@@ -23,7 +23,8 @@ enum class RoughTrack {
 /// counts if it has a centre of its own. Frames that the camera lost are steps of the path (skipped_frames.h). Empty if
 /// the residuals or the roughness of the path are too large, if the path lies on a lattice of whole pixels although the
 /// object moves, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than before
-/// (or in fewer than eight).
+/// (or in fewer than eight). A track of an outline has its centre already: neither short stretches nor the look's own
+/// centre are tried, and no edge is looked for.
 std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const std::vector<FrameWindow>& windows,
                                               const ShapeAt& shape_at, RoughTrack kind = RoughTrack::of_parts);
 
