@@ -14,7 +14,6 @@
 #include "render/camera/camera.h"
 #include "render/camera/frame_clock.h"
 #include "render/camera/optics.h"
-#include "render/camera/shutter.h"
 #include "render/sensor/sensor.h"
 #include "render/video/video_writer.h"
 #include "sim/motion/motion_scenario.h"
