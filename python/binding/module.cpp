@@ -16,7 +16,7 @@
 
 #include "base/errors.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "python/binding/outcome.h"
 #include "version_of_build.h"
 
@@ -64,7 +64,7 @@ PYBIND11_MODULE(_glidelab, module) {
   module.attr("version") = GLIDELAB_VERSION;
   module.attr("pybind11_version") = pybind11::make_tuple(PYBIND11_VERSION_MAJOR, PYBIND11_VERSION_MINOR);
   bind_outcome(module);
-  bind_given_track(module);
+  bind_given_input(module);
   bind_analysis(module);
   bind_simulation(module);
   bind_diagnosis(module);
