@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
 #include "base/math/angles.h"
 #include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"

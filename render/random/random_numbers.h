@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
 #include "base/math/simd.h"
 
 namespace glidelab::render {

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+
 #include "base/toml/strict_toml.h"
 #include "sim/force/force_law.h"
 
