@@ -15,7 +15,6 @@
 #include "core/motion/lines/mu_and_alpha.h"
 #include "core/motion/speed_motion.h"
 #include "core/motion/steady_fall.h"
-#include "core/result/one_direction.h"
 
 namespace glidelab::core {
 
