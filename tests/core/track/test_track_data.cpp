@@ -14,7 +14,7 @@
 #include "tests/temp_dir.h"
 
 using Catch::Matchers::Contains;
-using core::TrackData;
+using glidelab::core::TrackData;
 using namespace glidelab;
 
 namespace {
