@@ -219,23 +219,23 @@ TEST_CASE("A sensor without patterns, colours and tone gives the codes that read
 
 namespace {
 
-constexpr int kWidth = 64;
-constexpr int kHeight = 48;
-constexpr PixelRect kAll{0, 0, kWidth, kHeight};
+constexpr int kRawWidth = 64;
+constexpr int kRawHeight = 48;
+constexpr PixelRect kAll{0, 0, kRawWidth, kRawHeight};
 const std::array<float, 4> kAlike = {1.0f, 1.0f, 1.0f, 1.0f};
 
 template <typename Value>
 std::vector<std::uint16_t> raw_of(const Value& value) {
   std::vector<std::uint16_t> raw;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) raw.push_back(static_cast<std::uint16_t>(std::lround(value(x, y))));
+  for (int y = 0; y < kRawHeight; ++y) {
+    for (int x = 0; x < kRawWidth; ++x) raw.push_back(static_cast<std::uint16_t>(std::lround(value(x, y))));
   }
   return raw;
 }
 
 FloatImage grey_of(const std::vector<std::uint16_t>& raw, const std::array<float, 4>& response = kAlike,
                    float offset_dn = 0.0f) {
-  return demosaic(raw, kAll, kAll, kWidth, kHeight, response, offset_dn);
+  return demosaic(raw, kAll, kAll, kRawWidth, kRawHeight, response, offset_dn);
 }
 
 }  // namespace
@@ -250,8 +250,8 @@ TEST_CASE("An even light comes out even, whatever the answers of the colours") {
 
 TEST_CASE("A ramp of light passes unchanged but at the image's edge") {
   const FloatImage grey = grey_of(raw_of([](int x, int y) { return 100.0 + 7.0 * x + 3.0 * y; }));
-  for (int y = 1; y < kHeight - 1; ++y) {
-    for (int x = 1; x < kWidth - 1; ++x) {
+  for (int y = 1; y < kRawHeight - 1; ++y) {
+    for (int x = 1; x < kRawWidth - 1; ++x) {
       REQUIRE(std::abs(grey.at(x, y) - static_cast<float>(100 + 7 * x + 3 * y)) < 1e-3f);
     }
   }
@@ -275,10 +275,10 @@ TEST_CASE("Demosaicing agrees with OpenCV's to its rounding of each colour") {
   const std::vector<std::uint16_t> raw = raw_of([&](int, int) { return codes(random); });
   const FloatImage grey = grey_of(raw);
   cv::Mat color;
-  cv::cvtColor(cv::Mat(kHeight, kWidth, CV_16U, const_cast<std::uint16_t*>(raw.data())), color,
+  cv::cvtColor(cv::Mat(kRawHeight, kRawWidth, CV_16U, const_cast<std::uint16_t*>(raw.data())), color,
                cv::COLOR_BayerBG2BGR);  // OpenCV names a mosaic by its second row: RGGB is "BG"
-  for (int y = 1; y < kHeight - 1; ++y) {
-    for (int x = 1; x < kWidth - 1; ++x) {
+  for (int y = 1; y < kRawHeight - 1; ++y) {
+    for (int x = 1; x < kRawWidth - 1; ++x) {
       const cv::Vec3w bgr = color.at<cv::Vec3w>(y, x);
       const double theirs = 0.114 * bgr[0] + 0.587 * bgr[1] + 0.299 * bgr[2];
       REQUIRE(std::abs(grey.at(x, y) - theirs) <= 0.76);  // 1/2 of each, but 3/4 where four codes are averaged
@@ -292,14 +292,14 @@ TEST_CASE("A part of the image is demosaiced as the whole") {
   const std::vector<std::uint16_t> raw = raw_of([&](int, int) { return codes(random); });
   const FloatImage whole = grey_of(raw);
   for (const PixelRect& inner :
-       {PixelRect{0, 0, 5, 7}, PixelRect{13, 9, 20, 11}, PixelRect{kWidth - 3, kHeight - 4, 3, 4}}) {
-    const PixelRect outer = with_neighbours(inner, kWidth, kHeight);
+       {PixelRect{0, 0, 5, 7}, PixelRect{13, 9, 20, 11}, PixelRect{kRawWidth - 3, kRawHeight - 4, 3, 4}}) {
+    const PixelRect outer = with_neighbours(inner, kRawWidth, kRawHeight);
     std::vector<std::uint16_t> part;
     for (int y = outer.y; y < outer.y + outer.height; ++y) {
       for (int x = outer.x; x < outer.x + outer.width; ++x)
-        part.push_back(raw[static_cast<std::size_t>(y * kWidth + x)]);
+        part.push_back(raw[static_cast<std::size_t>(y * kRawWidth + x)]);
     }
-    const FloatImage grey = demosaic(part, outer, inner, kWidth, kHeight, kAlike, 0.0f);
+    const FloatImage grey = demosaic(part, outer, inner, kRawWidth, kRawHeight, kAlike, 0.0f);
     for (int y = 0; y < inner.height; ++y) {
       for (int x = 0; x < inner.width; ++x) REQUIRE(grey.at(x, y) == whole.at(inner.x + x, inner.y + y));
     }
