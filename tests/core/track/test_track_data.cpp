@@ -13,9 +13,9 @@
 #include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
+using namespace glidelab;
 using Catch::Matchers::Contains;
 using core::TrackData;
-using namespace glidelab;
 
 namespace {
 
