@@ -4,8 +4,8 @@
 
 #include "tests/catch.h"
 
-using glidelab::base::trimmed;
 using namespace glidelab;
+using glidelab::base::trimmed;
 
 TEST_CASE("text that is not UTF-8 gets a replacement for each wrong byte, and valid text stays") {
   for (const char* valid : {"", "plain", "ung\u00FCltig", "\u20AC \U0001F600", "\u0800\uD7FF\uE000\uFFFF"}) {

@@ -4,8 +4,8 @@
 
 #include "tests/catch.h"
 
-using diagnose::Explanation;
 using namespace glidelab;
+using diagnose::Explanation;
 
 namespace {
 
