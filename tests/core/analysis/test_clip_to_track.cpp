@@ -84,7 +84,7 @@ TEST_CASE("an interlaced film is noted, whether or not anyone asks for its scene
       for (const int field : {0, 1}) {
         fields[field] = cv::Mat(kSize, CV_64F, cv::Scalar(60.0));
         const double late = interlaced ? 0.5 * field : 0.0;
-        tests::put_disc(fields[field], place((k + late) / kRate), 6.0, 210.0);
+        tests::put_disc(fields[field], cv::Point2d(20.0 + 4.0 * (k + late), 90.0), 6.0, 210.0);
       }
       for (int row = 1; row < kSize.height; row += 2) fields[1].row(row).copyTo(fields[0].row(row));
       frames.push_back(fields[0]);
