@@ -13,6 +13,7 @@
 #include "base/math/angles.h"
 #include "core/analysis/centroid_wander.h"
 #include "core/analysis/followed_wrongly.h"
+#include "core/analysis/repeats_left_out.h"
 #include "core/motion/codec_drag.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
@@ -430,6 +431,7 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
   }
   for (const std::size_t i : images) {
     if (results.without_marker[i]) seen[i] = {};
+    leave_out_repeats(seen[i]);
   }
   const bool is_disc = body_of(experiment, setting, seen) == MarkerBody::disc;
   for (auto& [name, restitution] : setting.restitutions) {

@@ -20,6 +20,7 @@
 #include "core/pictures/marker/pattern/template_look.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/sphere/still_background.h"
+#include "core/pictures/scene/interlacing.h"
 #include "core/pictures/scene/scene_watch.h"
 
 namespace glidelab::core {
@@ -169,6 +170,7 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
     scene.emplace(source->facts().lossy.value_or(false));
     seen.images = std::make_shared<ImageRecord>();
   }
+  CombWatch combs;
   SquareWatch squares;
   const bool may_be_square = any == nullptr && !with_color;
   while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
@@ -176,6 +178,7 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
     if (seen.frame_t_s.empty()) require_visible(clip, restitution, seen.size);
     seen.frame_t_s.push_back(frame->t_s);
     tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
+    if (!frame->draw) combs.add(frame->grey, frame->index);
     if (may_be_square && !frame->draw) squares.add(frame->grey, frame->index, radius_at);
     if (scene) {
       scene->add(frame->grey, frame->t_s);
@@ -190,8 +193,10 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
     none = nothing;
   }
   seen.notes = source->notes();
+  if (combs.share() > kInterlacedShare) seen.notes.emplace_back(InterlacedFilm{experiment.camera->frame_rate_hz});
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
+  if (scene) seen.images->combs = combs.share();
   if (scene) finish_record(source->facts(), signal_kind(marker) == SignalKind::dark, *scene, seen);
   return {std::move(seen), std::move(none), squares.any_moves()};
 }

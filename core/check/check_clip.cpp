@@ -66,9 +66,10 @@ std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sight
 
 namespace {
 
-constexpr double kTopSpeedQuantile = 0.99;  // not the largest: single frames may be wrong
-constexpr std::size_t kSpeedLag = 4;        // frames over which a speed is taken
-constexpr std::size_t kPathPlaces = 200;    // of the marker's path that are kept
+constexpr double kTopSpeedQuantile = 0.99;               // not the largest: single frames may be wrong
+constexpr std::size_t kSpeedLag = 4;                     // sightings over which a speed is taken,
+constexpr std::size_t kLongestSpeedLag = 2 * kSpeedLag;  // and frames: some may be left out
+constexpr std::size_t kPathPlaces = 200;                 // of the marker's path that are kept
 constexpr double kEdgeRadii = 3.0;  // of the marker: closer to the edge of the image it may have come from outside
 constexpr double kLeastOverExposure = 2.0;  // times the stated exposure
 constexpr double kLeastOverDiameter = 0.5;  // marker diameters: perspective may lengthen a marker by less
@@ -87,7 +88,7 @@ Speeds speeds_of(const TrackData& track) {
   for (std::size_t i = kSpeedLag; i < track.x_m.size(); ++i) {
     const std::size_t k = i - kSpeedLag;
     const double dt_s = track.t_s[i] - track.t_s[k];
-    if (track.frame[i] - track.frame[k] != kSpeedLag) continue;
+    if (track.frame[i] - track.frame[k] > kLongestSpeedLag) continue;
     const double distance_m = std::abs(track.x_m[i] - track.x_m[k]);
     m_s.push_back(distance_m / dt_s);
     if (track.sightings.empty()) continue;
@@ -278,7 +279,10 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
   clip.sightings = track.sightings;
   judge_edges(clip);
   clip.longest_blur_px = clip.top_speed_px_s / camera.frame_rate_hz;
-  clip.stalls = stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * px_per_m));
+  if (!clip.repeats) {
+    clip.stalls =
+        stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * px_per_m));
+  }
   const std::size_t every = track.sightings.size() / kPathPlaces + 1;
   for (std::size_t i = 0; i < track.sightings.size(); i += every) {
     clip.path.push_back({track.sightings[i].u_px, track.sightings[i].v_px});
@@ -313,6 +317,10 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.failure = attempt.failure;
   if (!clip.failure.empty()) return clip;
   clip.notes = track.notes;
+  for (const Note& note : track.notes) {
+    if (const auto* const repeats = std::get_if<RepeatsLeftOut>(&note)) clip.repeats = *repeats;
+  }
+  if (clip.repeats) clip.stalls = clip.repeats->repeats;
   clip.frames = track.frame_t_s.size();
   clip.seen = track.x_m.size();
   if (!track.frame.empty()) {

@@ -101,19 +101,20 @@ struct ClipCheck {
   int width_px = 0, height_px = 0;
   double frame_rate_hz = 0.0;  ///< as stated; of a track, the median
   std::optional<double> container_rate_hz;
-  std::size_t repeated = 0;             ///< frames equal to the one before, bit by bit
-  std::size_t irregular_steps = 0;      ///< between the file's time stamps
-  double drift_frames = 0.0;            ///< largest departure of the time stamps from even spacing, in frames
-  std::size_t jumps = 0;                ///< places where frames are missing (lost_frames.h)
-  std::size_t stalls = 0;               ///< single steps well below their neighbours: duplicated frames
-  double saturated = 0.0;               ///< share of the pixels at the largest code
-  double dark = 0.0;                    ///< share of the pixels at 0
-  double bright_level = 0.0;            ///< exceeded by 0.1 % of the pixels
-  double marker_px = 0.0;               ///< median diameter
-  double marker_expected_px = 0.0;      ///< from its stated diameter and the scale along its path; 0: not known
-  std::optional<double> contrast;       ///< marker minus its surroundings; none for one that is known by its hue
-  std::optional<double> marker_level;   ///< its own brightness
-  std::optional<MarkerLighting> light;  ///< how it changes along the path; of a marker with an outline
+  std::size_t repeated = 0;               ///< frames equal to the one before, bit by bit
+  std::optional<RepeatsLeftOut> repeats;  ///< frames in mid-motion that show the image of the one before
+  std::size_t irregular_steps = 0;        ///< between the file's time stamps
+  double drift_frames = 0.0;              ///< largest departure of the time stamps from even spacing, in frames
+  std::size_t jumps = 0;                  ///< places where frames are missing (lost_frames.h)
+  std::size_t stalls = 0;                 ///< single steps well below their neighbours: duplicated frames
+  double saturated = 0.0;                 ///< share of the pixels at the largest code
+  double dark = 0.0;                      ///< share of the pixels at 0
+  double bright_level = 0.0;              ///< exceeded by 0.1 % of the pixels
+  double marker_px = 0.0;                 ///< median diameter
+  double marker_expected_px = 0.0;        ///< from its stated diameter and the scale along its path; 0: not known
+  std::optional<double> contrast;         ///< marker minus its surroundings; none for one that is known by its hue
+  std::optional<double> marker_level;     ///< its own brightness
+  std::optional<MarkerLighting> light;    ///< how it changes along the path; of a marker with an outline
   PathBrightness brightness;
   std::shared_ptr<const ImageRecord> record;  ///< of its scene
   double pixel_noise = 0.0;                   ///< of a pixel at rest from frame to frame; 0 if none is seen

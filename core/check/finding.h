@@ -264,7 +264,8 @@ struct Jumps {
 
 struct FramesRepeated {
   std::size_t repeated = 0, frames = 0;
-  std::size_t stalls = 0;  ///< of the marker, for a single frame
+  std::size_t stalls = 0;   ///< of the body, for a single frame
+  bool times_hold = false;  ///< the analysis leaves them out, and knows the times of the others
 };
 
 /// What a file on its own does not state.

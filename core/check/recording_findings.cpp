@@ -100,8 +100,9 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBoo
   }
   if (clip.repeated + clip.stalls > 0) {
     const double share = static_cast<double>(std::max(clip.repeated, clip.stalls)) / frames;
-    book.add(share > kUnusableRepeatedShare ? Severity::unusable : Severity::change,
-             found::FramesRepeated{clip.repeated, clip.frames, clip.stalls});
+    const bool hold = clip.repeats && (clip.repeats->in_place_of_lost || clip.repeats->camera_hz > 0.0);
+    book.add(share > kUnusableRepeatedShare && !hold ? Severity::unusable : Severity::change,
+             found::FramesRepeated{clip.repeated, clip.frames, clip.stalls, hold});
   }
 }
 
@@ -152,13 +153,15 @@ void judge_ends(const ClipCheck& clip, FindingBook& book) {
 }
 
 void judge_marker(const ClipCheck& clip, FindingBook& book) {
-  const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(clip.spanned, 1));
+  const std::size_t left_out = clip.repeats ? clip.repeats->repeats : 0;
+  const std::size_t looked_at = clip.spanned - std::min(clip.spanned, left_out);
+  const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(looked_at, 1));
   if (clip.seen < kFewSightings) {
     book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, found::FewSightings{clip.seen});
   }
   if (share < kLeastSeenShare) {
     book.add(share < kUnusableSeenShare ? Severity::unusable : Severity::change,
-             found::SightingsMissing{clip.seen, clip.spanned});
+             found::SightingsMissing{clip.seen, looked_at});
   }
   judge_ends(clip, book);
   if (clip.marker_px < kSmallMarkerPx) {
@@ -219,6 +222,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
   for (const Note& note : clip.notes) {
     const bool reported =
         std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
+        std::holds_alternative<InterlacedFilm>(note) || (clip.images && std::holds_alternative<RepeatsLeftOut>(note)) ||
         (inclined && std::holds_alternative<HeightTaken>(note)) ||                  // asks whether it falls
         (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice
     if (!reported) book.add(Severity::note, note);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -36,6 +37,15 @@ inline double median_step(std::span<const double> t_s) {
   steps.reserve(t_s.size());
   for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
   return quantile(std::move(steps), 0.5);
+}
+
+/// Whether all steps are alike to a tenth: a file of constant rate, or a table of every frame.
+inline bool has_even_steps(std::span<const double> t_s, double step_s) {
+  constexpr double kMostUneven = 0.1;  // of the step
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    if (std::abs(t_s[i] - t_s[i - 1] - step_s) > kMostUneven * step_s) return false;
+  }
+  return step_s > 0.0;
 }
 
 }  // namespace glidelab::core

@@ -42,6 +42,18 @@ struct RepeatedFrames {
 };
 
 /// Rounded time stamps that are explained by evenly spaced frames.
+/// Frames in mid-motion that show the image of the frame before, left out (core/math/frame_repeats.h).
+struct RepeatsLeftOut {
+  std::size_t repeats = 0, frames = 0;
+  bool in_place_of_lost = false;  ///< the other times are right
+  double camera_hz = 0.0;  ///< of a film brought to a higher rate, by which the others are timed; 0: no such film
+};
+
+/// Each frame has rows of two times, half a frame apart.
+struct InterlacedFilm {
+  double frame_rate_hz = 0.0;
+};
+
 struct EvenStamps {
   double tick_s = 0.0, step_s = 0.0;
   double half_width_s = 0.0;  ///< of the steps that would explain them
@@ -412,17 +424,19 @@ struct FitScatters {
   bool motions_differ = false;
 };
 
-using AnyNote = std::variant<
-    FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps, SheetTaken,
-    ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion, RowsIncomplete,
-    UnlikelyLeftOut, ImageUnitsTaken, PositionsUnseen, PositionsScattered, PositionsAstray, ColumnsGuessed, PathBends,
-    RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip, PositionsFilledIn,
-    AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners, CornersErrTogether,
-    UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy,
-    MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost, DarkMarker, DiscMarker, NotOfStatedSize, NoRay,
-    SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
-    NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
-    InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
+using AnyNote =
+    std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames,
+                 RepeatsLeftOut, InterlacedFilm, EvenStamps, SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken,
+                 ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion, RowsIncomplete, UnlikelyLeftOut,
+                 ImageUnitsTaken, PositionsUnseen, PositionsScattered, PositionsAstray, ColumnsGuessed, PathBends,
+                 RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip, PositionsFilledIn,
+                 AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners,
+                 CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
+                 MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost,
+                 DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
+                 FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
+                 GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
+                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -19,6 +19,7 @@
 #include "core/experiment/local_gravity.h"
 #include "core/math/even_times.h"
 #include "core/math/false_positions.h"
+#include "core/math/frame_repeats.h"
 #include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
 #include "core/track/column_table.h"
@@ -82,9 +83,38 @@ void leave_out_false_positions(TrackData& track) {
   }
 }
 
+namespace {
+
+/// Rows of a film that repeats frames (core/math/frame_repeats.h); their times become the camera's.
+void leave_out_repeated_rows(TrackData& track) {
+  constexpr double kMostUneven = 0.1;  // of a row
+  const double step_s = median_step(track.t_s);
+  if (track.x_m.empty() || !(step_s > 0.0)) return;
+  std::vector<std::size_t> row(track.t_s.size());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double steps = (track.t_s[i] - track.t_s.front()) / step_s;
+    row[i] = static_cast<std::size_t>(std::round(steps));
+    if (std::abs(steps - std::round(steps)) > kMostUneven || (i > 0 && row[i] <= row[i - 1])) return;
+  }
+  const std::optional<FrameRepeats> repeats = frame_repeats(row, track.x_m);
+  if (!repeats) return;
+  RepeatsLeftOut note{repeats->points.size(), track.t_s.size(), repeats->in_place_of_lost, 0.0};
+  if (const auto& cadence = repeats->cadence) {
+    note.camera_hz = cadence->rate_ratio / step_s;
+    for (std::size_t i = 0; i < row.size(); ++i) track.t_s[i] -= step_s * cadence->early_frames(row[i]);
+  }
+  std::vector<bool> flagged(track.t_s.size(), false);
+  for (const std::size_t point : repeats->points) flagged[point] = true;
+  leave_out(flagged, track);
+  track.notes.emplace_back(note);
+}
+
+}  // namespace
+
 void take_rows_as_frames(TrackData& track) {
   leave_out_false_positions(track);
   put_even(track);
+  leave_out_repeated_rows(track);
   track.frame.resize(track.t_s.size());
   std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
   track.frame_t_s = track.t_s;

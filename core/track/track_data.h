@@ -57,8 +57,9 @@ struct TrackData {
 /// ends, then the positions of something else (core/math/false_positions.h), with notes that count them.
 void leave_out_false_positions(TrackData& track);
 
-/// Takes every point of a track from a file as a frame in which the object was seen, without false ones; the frame
-/// rate is one over the median time step. Times that are uniform except for rounding to written digits are restored to
+/// Takes every point of a track from a file as a frame in which the object was seen, without false ones and without
+/// those in which a film repeats the frame before (core/math/frame_repeats.h); the frame rate is one over the median
+/// time step. Times that are uniform except for rounding to written digits are restored to
 /// their uniform values (even_times.h); a note says so if a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);
 

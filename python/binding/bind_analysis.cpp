@@ -134,8 +134,9 @@ py::tuple told(
 }
 
 py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisChoices& choices,
-                        const core::TrackFileOptions& bare, const py::object& progress_told) {
+                        const core::TrackFileOptions& given, const py::object& progress_told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
+  const core::TrackFileOptions bare = core::masses_of_files(given, folders);
   const fit::Estimator& estimator = estimator_of(choices);
   diagnose::check_given_causes(choices.with_effects, kWithEffects);
   std::string title;

@@ -62,8 +62,9 @@ py::tuple told(diagnose::Diagnosis found, std::string title) {
 }
 
 py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vector<std::string>& without, int jobs,
-                         const core::TrackFileOptions& bare, const py::object& progress_told) {
+                         const core::TrackFileOptions& given, const py::object& progress_told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
+  const core::TrackFileOptions bare = core::masses_of_files(given, folders);
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::string title;
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {

@@ -29,7 +29,8 @@ core::TrackFileOptions file_options(std::string column, std::optional<double> ma
                                     std::optional<double> incline_deg, std::optional<double> incline_sd_deg,
                                     std::optional<double> gravity_m_s2, std::optional<double> gravity_sd_m_s2,
                                     std::string runs, std::vector<double> masses_kg, bool allow_outside,
-                                    std::optional<double> most_megapixels, const std::string& recorded_by) {
+                                    std::optional<double> most_megapixels, const std::string& recorded_by,
+                                    std::optional<double> frame_rate_hz, std::optional<double> px_per_m) {
   core::TrackFileOptions options;
   options.column = std::move(column);
   options.mass_kg = mass_kg;
@@ -42,6 +43,8 @@ core::TrackFileOptions file_options(std::string column, std::optional<double> ma
   options.recorded_by = core::recorder_named(recorded_by);
   options.runs = std::move(runs);
   options.masses_kg = std::move(masses_kg);
+  options.frame_rate_hz = frame_rate_hz;
+  options.px_per_m = px_per_m;
   return options;
 }
 

@@ -181,9 +181,10 @@ Outcome run_sweep(const std::string& file, const std::string& folder, const Judg
 }
 
 Outcome certify(const std::vector<std::string>& inputs, std::size_t twins, const std::string& estimator,
-                std::optional<double> bandwidth_s, Seed seed, int jobs, const core::TrackFileOptions& bare,
+                std::optional<double> bandwidth_s, Seed seed, int jobs, const core::TrackFileOptions& given,
                 const py::object& told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
+  const core::TrackFileOptions bare = core::masses_of_files(given, folders);
   std::string title;
   const auto certificate = WatchedWork(told).run([&](const base::Progress& progress) {
     validate::CertifyOptions how;

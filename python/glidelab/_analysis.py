@@ -318,7 +318,8 @@ def analyze(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             smoother: str = "local-polynomial", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
             with_effects: Sequence[str] = (), incline_sd_deg: Optional[float] = None,
-            gravity_sd_m_s2: Optional[float] = None) -> Analysis:
+            gravity_sd_m_s2: Optional[float] = None, frame_rate_hz: Optional[float] = None,
+            px_per_m: Optional[float] = None) -> Analysis:
     """K/m, mu, alpha and the terminal velocity from positions, or from an experiment folder.
 
     Parameters
@@ -363,7 +364,7 @@ def analyze(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
         With a file of several runs (or masses): which of them become clips, by their numbers from 1 on. Without it the
         file is one clip.
     masses_kg : sequence of float, optional
-        With `runs`: the mass of each, in place of `mass_kg`.
+        The mass of each of the `runs`, or of each of several files, in place of `mass_kg`.
     with_effects : sequence of str
         Also give K/m, mu, alpha and the terminal velocity with these effects in the model (ids of
         docs/reference/effects.md): `Analysis.with_effects`.
@@ -371,6 +372,8 @@ def analyze(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
         With `incline_deg`: its standard deviation, with which motion in one direction gives mu.
     gravity_sd_m_s2 : float, optional
         With `gravity_m_s2`: its standard deviation, in place of the one said there; 0 if it is exact.
+    frame_rate_hz, px_per_m : float, optional
+        With a file that counts frames, or that is in pixels: frames per second, and pixels per metre.
 
     Returns
     -------
@@ -404,11 +407,13 @@ def analyze(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
         refuse({"name": name or None}, "a file's name is that of its results")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
-                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
+                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg,
+                             frame_rate_hz=frame_rate_hz, px_per_m=px_per_m)
         with given.told():
             return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)), given.written)
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                       "most_megapixels": most_megapixels}, allow_outside,
+                                       "most_megapixels": most_megapixels, "frame_rate_hz": frame_rate_hz,
+                                       "px_per_m": px_per_m}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
     gravity = given_gravity(gravity_m_s2, gravity_sd_m_s2)

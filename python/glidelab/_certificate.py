@@ -188,7 +188,8 @@ def certify(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None, incline_sd_deg: Optional[float] = None,
-            gravity_m_s2: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None) -> Certificate:
+            gravity_m_s2: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None, frame_rate_hz: Optional[float] = None,
+            px_per_m: Optional[float] = None) -> Certificate:
     """Records and analyses twins of a recording: do its intervals hold, what limits it, what would help?
 
     Parameters
@@ -208,7 +209,7 @@ def certify(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
         Of the twins' noise, clock and calibration; 1.
     allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
         As in `analyze`.
-    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2
+    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2, frame_rate_hz, px_per_m
         As in `analyze`.
 
     Returns
@@ -227,11 +228,12 @@ def certify(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seq
     Arrays are written to a temporary folder, with all their digits, and read as a file or a folder is.
     """
     given = readable_source(source, x_m, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                          "most_megapixels": most_megapixels}, allow_outside,
+                                          "most_megapixels": most_megapixels, "frame_rate_hz": frame_rate_hz,
+                                          "px_per_m": px_per_m}, allow_outside,
                             {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg},
                             {"gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2})
     files = file_options(given.paths, allow_outside, most_megapixels, column=column, runs=runs, masses_kg=masses_kg,
-                         **given.stated)
+                         frame_rate_hz=frame_rate_hz, px_per_m=px_per_m, **given.stated)
     bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
     text("estimator", estimator, f"one of {', '.join(_glidelab.estimator_names())}")
     with given.told():

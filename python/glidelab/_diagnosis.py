@@ -233,7 +233,8 @@ def diagnose(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Se
              most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
              column: str = "", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
              incline_sd_deg: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None,
-             recorded_by: str = "") -> Diagnosis:
+             recorded_by: str = "", frame_rate_hz: Optional[float] = None,
+             px_per_m: Optional[float] = None) -> Diagnosis:
     """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
 
     Parameters
@@ -251,7 +252,7 @@ def diagnose(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Se
         Effects to leave out, by the ids of docs/reference/effects.md.
     gravity_m_s2, allow_outside, most_megapixels, jobs, progress, column, runs, masses_kg
         As in `analyze`.
-    incline_sd_deg, gravity_sd_m_s2
+    incline_sd_deg, gravity_sd_m_s2, frame_rate_hz, px_per_m
         As in `analyze`.
     recorded_by : {"", "sensor", "camera"}
         What measured the positions of arrays or files: a motion sensor has none of the effects of a camera. Left out,
@@ -281,12 +282,13 @@ def diagnose(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Se
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg,
-                             recorded_by=recorder(recorded_by))
+                             recorded_by=recorder(recorded_by), frame_rate_hz=frame_rate_hz, px_per_m=px_per_m)
         with given.told():
             return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
                                                           teller(progress)), given.written)
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                       "most_megapixels": most_megapixels}, allow_outside,
+                                       "most_megapixels": most_megapixels, "frame_rate_hz": frame_rate_hz,
+                                       "px_per_m": px_per_m}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
     gravity = given_gravity(gravity_m_s2, gravity_sd_m_s2)

@@ -184,20 +184,20 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
                  mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
                  incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
                  gravity_sd_m_s2: Optional[float] = None, runs: Runs = None,
-                 masses_kg: Optional[Sequence[float]] = None, recorded_by: str = "") -> _glidelab.FileOptions:
+                 masses_kg: Optional[Sequence[float]] = None, recorded_by: str = "",
+                 frame_rate_hz: Optional[float] = None, px_per_m: Optional[float] = None) -> _glidelab.FileOptions:
     """What is stated along with files with a track; a folder's experiment.toml says the same of its clips."""
     text("column", column, "a column's header or its number, as text")
     steepest_deg = 90.0  # a fall
     given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg,
              "incline_sd_deg": incline_sd_deg, "gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2,
-             "runs": runs, "masses_kg": masses_kg, "recorded_by": recorded_by or None}
+             "runs": runs, "masses_kg": masses_kg, "recorded_by": recorded_by or None,
+             "frame_rate_hz": frame_rate_hz, "px_per_m": px_per_m}
     for key, value in given.items():
         if value is not None and any(os.path.isdir(path) for path in paths):
             raise input_error(key, shown(value), "none for a folder: its experiment.toml states it")
     if runs is not None and column:
         raise input_error("column", repr(column), "none with runs, each of which has a column of its own")
-    if masses_kg is not None and runs is None:
-        raise input_error("masses_kg", repr(masses_kg), "runs= as well: which of the file's runs they belong to")
     if masses_kg is not None and mass_kg is not None:
         raise input_error("mass_kg", repr(mass_kg), "none with masses_kg")
     incline_deg = optional_real("incline_deg", incline_deg, "degrees, from -90 to 90")
@@ -212,13 +212,19 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
     masses = () if masses_kg is None else masses_kg
     if isinstance(masses, str) or not isinstance(masses, Iterable):
         raise input_error("masses_kg", shown(masses), "a list of kilograms")
+    masses = [_positive("masses_kg", one) for one in masses]
+    if masses_kg is not None and runs is None and len(masses) != len(paths):
+        raise input_error("masses_kg", f"{len(masses)} of them",
+                          f"one for each of the {len(paths)} file{'' if len(paths) == 1 else 's'}, or runs= as well")
     return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg), incline_deg,
                                  None if incline_sd_deg is None else _positive("incline_sd_deg", incline_sd_deg,
                                                                                "degrees"),
                                  None if gravity_m_s2 is None else _positive("gravity_m_s2", gravity_m_s2,
                                                                              "metres per second squared"),
-                                 gravity_sd_m_s2, _runs_text(runs), [_positive("masses_kg", one) for one in masses],
-                                 switch("allow_outside", allow_outside), _megapixels(most_megapixels), recorded_by)
+                                 gravity_sd_m_s2, _runs_text(runs), masses,
+                                 switch("allow_outside", allow_outside), _megapixels(most_megapixels), recorded_by,
+                                 None if frame_rate_hz is None else _positive("frame_rate_hz", frame_rate_hz, "hertz"),
+                                 None if px_per_m is None else _positive("px_per_m", px_per_m, "pixels per metre"))
 
 
 def recorder(recorded_by: str) -> str:

@@ -70,7 +70,8 @@ def check(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seque
           column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
           masses_kg: Optional[Sequence[float]] = None,
           incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
-          gravity_sd_m_s2: Optional[float] = None) -> RecordingCheck:
+          gravity_sd_m_s2: Optional[float] = None, frame_rate_hz: Optional[float] = None,
+          px_per_m: Optional[float] = None) -> RecordingCheck:
     """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times, statements.
 
     Parameters
@@ -82,7 +83,7 @@ def check(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seque
         With times as `source`: positions in metres, positive downhill.
     allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
         As in `analyze`.
-    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2
+    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2, frame_rate_hz, px_per_m
         As in `analyze`.
 
     Returns
@@ -101,13 +102,14 @@ def check(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Seque
     their digits, and read as a file or a folder is.
     """
     given = readable_source(source, x_m, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                          "most_megapixels": most_megapixels}, allow_outside,
+                                          "most_megapixels": most_megapixels, "frame_rate_hz": frame_rate_hz,
+                                          "px_per_m": px_per_m}, allow_outside,
                             {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg},
                             {"gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2})
     if len(given.paths) != 1:
         raise input_error("source", f"{len(given.paths)} names", "the name of one folder or file")
     files = file_options(given.paths, allow_outside, most_megapixels, column=column, runs=runs, masses_kg=masses_kg,
-                         **given.stated)
+                         frame_rate_hz=frame_rate_hz, px_per_m=px_per_m, **given.stated)
     with given.told():
         made = Made(_glidelab.check(given.paths[0], files, job_count(jobs), teller(progress)), given.written)
     found = Result(made).to_dict()

@@ -42,9 +42,22 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::RepeatedFrames& of) const {
     return fmt::format(
-        "{} of {} frames are identical to the frame before: duplicates (a camera or converter that repeats frames), or "
-        "a scene at rest without any noise",
-        of.repeated, of.frames);
+        "{} of {} frames are identical to the frame before: repeats, or a scene at rest without any noise", of.repeated,
+        of.frames);
+  }
+  std::string operator()(const core::RepeatsLeftOut& of) const {
+    const std::string times =
+        of.camera_hz > 0.0
+            ? fmt::format("a converter added them, and the camera's {:.4g} Hz time the others", of.camera_hz)
+        : of.in_place_of_lost ? "they fill in for lost frames, so the other times are right"
+                              : "the others may be late by a frame";
+    return fmt::format("{} of {} frames repeat the one before and are left out: {}", of.repeats, of.frames, times);
+  }
+  std::string operator()(const core::InterlacedFilm& of) const {
+    return fmt::format(
+        "the film is interlaced: odd and even rows of a frame are half a frame apart, so positions err; make one frame "
+        "of each field (ffmpeg -vf bwdif) and state frame_rate_hz = {:.6g}",
+        2.0 * of.frame_rate_hz);
   }
   std::string operator()(const core::EvenStamps& of) const {
     return fmt::format(

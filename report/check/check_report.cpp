@@ -308,8 +308,8 @@ const std::vector<ClipColumn> kClipColumns = {
      "the rate that the file states"},
     {"lost / repeated",
      [](const core::ClipCheck& clip) {
-       return clip.images ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls))
-                          : std::string(kNothing);
+       return clip.images || clip.stalls > 0 ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls))
+                                             : std::string(kNothing);
      },
      "frames missing or repeated, as far as the marker's motion and the images show"},
     {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); },

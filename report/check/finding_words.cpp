@@ -248,10 +248,11 @@ struct FindingSentence {
   FindingWords operator()(const found::FramesRepeated& of) const {
     const std::string identical =
         fmt::format("{} of {} frames are identical to the frame before", of.repeated, of.frames);
-    return {of.stalls > 0
-                ? fmt::format("the marker stands still for a frame {} in mid-motion, and {}: frames are duplicated",
-                              times_text(of.stalls), identical)
-                : identical,
+    const std::string stalls = fmt::format("the body stands still for a frame {} in mid-motion", times_text(of.stalls));
+    return {of.stalls == 0
+                ? identical
+                : fmt::format("{}{}: frames are repeated{}", stalls, of.repeated > 0 ? ", and " + identical : "",
+                              of.times_hold ? " (the analysis leaves them out)" : ""),
             "export the clip at the rate at which it was filmed and at a high bit rate (strong compression repeats "
             "frames too), with a converter that adds no frames"};
   }

@@ -227,6 +227,23 @@ class SameBits(InFolder):
         self.assertIn("A motion sensor measured the positions", " ".join(stated.notes))
         self.assertEqual(len(glidelab.analyze(file, runs=[2]).clips), 1)
 
+    def test_tables_of_frames_and_pixels(self):
+        tracks = made_tracks()[:2]
+        files = []
+        for k, track in enumerate(tracks):
+            files.append(self.folder / f"track-{k}.csv")
+            files[-1].write_text("frame,x (px)\n" + "".join(
+                f"{row},{500.0 * float(x)!r}\n" for row, x in enumerate(track.x_m)))
+        options = ("--frame-rate", "200", "--px-per-m", "500", "--masses", "0.3,0.4")
+        choices = {"frame_rate_hz": 200.0, "px_per_m": 500.0, "masses_kg": [0.3, 0.4]}
+        said = run("analyze", *files, "-q", "--json", "-o", self.folder / "a", *options)
+        self.assertEqual(glidelab.analyze(files, **choices).to_json(), said)
+        run("diagnose", *files, "-q", "--no-page", "-o", self.folder / "d", *options)
+        self.assertEqual(glidelab.diagnose(files, **choices).to_json(), (self.folder / "d" / "diagnosis.json").read_text())
+        said = run("check", files[0], "-q", "--json", "-o", self.folder / "c", "--frame-rate", "200", "--px-per-m", "500",
+                   "--mass", "0.3")
+        self.assertEqual(glidelab.check(files[0], frame_rate_hz=200.0, px_per_m=500.0, mass_kg=0.3).to_json(), said)
+
     def test_plan(self):
         said = run("diagnose", "--plan", SCENARIO, "--noise-m", "2e-5", "--seed", "7", "-q", "--no-page", "--json",
                    "-o", self.folder / "out")

@@ -24,17 +24,9 @@ constexpr double kMostResidualOfDistance = 0.1;  // allowed residual, as a fract
                                                  // change at a reversal
 constexpr double kMostOffWholeFrame = 1.0 / 7.0;  // allowed deviation of the jump from a whole number of frames
 constexpr double kMostFramesMissing = 2.0;        // allowed frames without a marker in a window
-constexpr double kMostUnevenStep = 0.1;           // of the step
 constexpr double kUnit = 1.0 / static_cast<double>(kBefore);  // of a step: keeps the design's columns alike
 constexpr int kTurnRounds = 4;                                // iterations for the time of a turn
 constexpr Eigen::Index kFewestAtTurn = 7;                     // points
-
-bool is_uniform(const std::vector<double>& t_s, double step_s) {
-  for (std::size_t i = 1; i < t_s.size(); ++i) {
-    if (std::abs(t_s[i] - t_s[i - 1] - step_s) > kMostUnevenStep * step_s) return false;
-  }
-  return step_s > 0.0;
-}
 
 /// The positions of a window around a pair of neighbouring frames, in units of kBefore steps from the first one after
 /// the gap.
@@ -252,7 +244,7 @@ std::vector<std::size_t> single_outliers(const Motion& motion) {
 
 std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& motion) {
   const double step = median_step(track.frame_t_s);
-  if (!is_uniform(track.frame_t_s, step) || !(motion.noise_m > 0.0)) return {};
+  if (!has_even_steps(track.frame_t_s, step) || !(motion.noise_m > 0.0)) return {};
   // A position next to a jump may look like an outlier, so losses found with all positions are corrected first.
   const std::vector<LostFrames> plain = losses_of(motion, {}, step);
   Motion right = motion;

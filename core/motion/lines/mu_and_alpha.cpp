@@ -64,26 +64,37 @@ CombinedVariance combined(const std::vector<OfLine>& lines) {
   return made;
 }
 
+/// What two lines whose slopes differ by more than three standard deviations leave unexplained, as a variance of each
+/// slope; 0 for others.
+double unexplained_of_slope(const LineFit& one, const LineFit& other) {
+  const double apart = one.k_over_m_1_s.value - other.k_over_m_1_s.value;
+  // Lines smoothed together may have one K/m but for rounding: a hundredth of their deviations is no difference.
+  const double rounding = 1e-4 * (one.parts.var_k + other.parts.var_k);
+  const double allowed = combined({{{1.0, 0.0}, &one}, {{-1.0, 0.0}, &other}}).total + rounding;
+  return apart * apart > 9.0 * allowed ? 0.5 * (apart * apart - allowed) : 0.0;
+}
+
+/// How an intercept goes with its slope: a line is known best at the mean speed of its points.
+double intercept_per_slope(const LineFit& line) {
+  return line.parts.var_k > 0.0 ? line.parts.cov / line.parts.var_k : 0.0;
+}
+
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+), and its change for one standard deviation of
 /// gravity.
 Quantity of_intercepts(double value, double by_minus, double by_plus, double of_gravity, const LineFit& minus,
                        const LineFit& plus) {
-  const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
-  return determined(estimate(value, random, total - random.value + of_gravity * of_gravity), std::sqrt(random.value));
+  const auto [noise, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
+  const double by_slopes =
+      std::pow(by_minus * intercept_per_slope(minus), 2) + std::pow(by_plus * intercept_per_slope(plus), 2);
+  const KnownVariance random = sum_of(noise, {by_slopes * unexplained_of_slope(minus, plus), 1.0});
+  return determined(estimate(value, random, total - noise.value + of_gravity * of_gravity), std::sqrt(random.value));
 }
 
 }  // namespace
 
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined(unknown::NoLine{});
-  double between = 0.0;
-  if (lines.size() == 2) {
-    const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    // Lines smoothed together may have one K/m but for rounding: a hundredth of their deviations is no difference.
-    const double rounding = 1e-4 * (lines[0].parts.var_k + lines[1].parts.var_k);
-    const double allowed = combined({{{1.0, 0.0}, &lines[0]}, {{-1.0, 0.0}, &lines[1]}}).total + rounding;
-    if (apart * apart > 9.0 * allowed) between = 0.5 * (apart * apart - allowed);
-  }
+  const double between = lines.size() == 2 ? unexplained_of_slope(lines[0], lines[1]) : 0.0;
   std::vector<double> weights;
   double sum = 0.0, value = 0.0;
   for (const LineFit& line : lines) {

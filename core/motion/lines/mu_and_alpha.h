@@ -18,6 +18,9 @@ struct MuAndAlpha {
 /// Friction and inclination of the two lines' intercepts (a0- of v < 0), equation (13) of the paper:
 ///
 ///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
+///
+/// Where the slopes of the two lines differ by more than three standard deviations, as with clips whose friction
+/// differs, the variance that mean_k() adds to each slope goes into its intercept too, along the covariance of the two.
 MuAndAlpha mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, const Gravity& gravity);
 
 /// mu of motion in one direction, v > 0 (s = 1) or v < 0 (s = -1), and a stated inclination, with its derivatives:

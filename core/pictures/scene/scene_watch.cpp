@@ -220,7 +220,6 @@ void SceneWatch::add(const cv::Mat& grey, double t_s) {
     choose(grey);
   }
   steps_.add(grey);
-  combs_.add(grey, added_++);
   if (patches_.empty()) return;
   if (ready_) return look(grey, t_s);
   early_.push_back(grey.clone());
@@ -244,7 +243,6 @@ PixelChanges SceneWatch::changes_by_level() const {
 void SceneWatch::finish(ImageRecord& record) {
   record.scene = std::move(looks_);
   record.steps = steps_.finish();
-  record.combs = combs_.share();
   if (!lossy_ && through_lossy_codec(record)) allow_for_codec(record.scene);
   if (changes_ == 0) return;
   record.noise_code = std::sqrt(0.5 * change_one_ / static_cast<double>(changes_)) / kPatchSofter;

@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "core/pictures/scene/camera_traces.h"
-#include "core/pictures/scene/interlacing.h"
 #include "core/result/image_record.h"
 
 namespace glidelab::core {
@@ -98,8 +97,6 @@ class SceneWatch {
   std::vector<SceneLook> looks_;
   std::vector<double> variances_;  ///< of a pixel, that the looks' errors come from
   BlockStepSums steps_;
-  CombWatch combs_;
-  std::size_t added_ = 0;
   double change_one_ = 0.0, change_two_ = 0.0;
   std::size_t changes_ = 0;
 };

@@ -261,6 +261,24 @@ std::string check_first_words(const diagnose::Diagnosis& diagnosis) {
   return {};
 }
 
+/// That the images show the camera to drift along the motion; empty if they do not, or if its motion is named.
+std::string drift_words(const diagnose::Diagnosis& diagnosis) {
+  const auto names_it = [](const diagnose::DiagnosedEffect& effect) {
+    return effect.id == diagnose::ids::camera_motion ||
+           std::ranges::count(effect.equivalent_to, diagnose::ids::camera_motion) > 0;
+  };
+  if (std::ranges::any_of(diagnosis.effects, names_it)) return {};
+  for (const diagnose::ImageFinding& finding : diagnosis.images) {
+    const auto* const sway = std::get_if<diagnose::image::Sway>(&finding.fact);
+    if (sway == nullptr || sway->how != diagnose::image::Sway::How::drifts || !(sway->speed_m_s > 0.0)) continue;
+    return fmt::format(
+        " The camera drifts: the images show up to {:.2g} mm/s along the track, by which every speed may be wrong. The "
+        "uncertainties of α and of the terminal velocity include it; fix the camera before you film again.",
+        1e3 * sway->speed_m_s);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
@@ -276,6 +294,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
     if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
+  text += drift_words(diagnosis);
   if (limits.set_aside) text = note_words(*limits.set_aside) + " " + text;
   const std::string first = check_first_words(diagnosis);
   return first.empty() ? text : first + " " + text;

@@ -1,6 +1,7 @@
 #include "core/analysis/clip_to_track.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -72,6 +73,29 @@ TEST_CASE("a rolling shutter's rows have their own times where the experiment de
   CHECK(error_of(line_readout_s) < 0.03 / kPixelsPerMetre);
   // Not declared: the marker goes down 79 rows, which at 40 us each is 3.2 ms, in which it moves by 0.95 px.
   CHECK(error_of(0.0) > 0.5 / kPixelsPerMetre);
+}
+
+TEST_CASE("an interlaced film is noted, whether or not anyone asks for its scene") {
+  const tests::TempDir dir;
+  for (const bool interlaced : {true, false}) {
+    std::vector<cv::Mat> frames;
+    for (int k = 0; k < 45; ++k) {
+      std::array<cv::Mat, 2> fields;
+      for (const int field : {0, 1}) {
+        fields[field] = cv::Mat(kSize, CV_64F, cv::Scalar(60.0));
+        const double late = interlaced ? 0.5 * field : 0.0;
+        tests::put_disc(fields[field], place((k + late) / kRate), 6.0, 210.0);
+      }
+      for (int row = 1; row < kSize.height; row += 2) fields[1].row(row).copyTo(fields[0].row(row));
+      frames.push_back(fields[0]);
+    }
+    const std::filesystem::path clip = dir / (interlaced ? "woven.mkv" : "whole.mkv");
+    tests::write_video(clip, frames, kRate, 1.0);
+    const auto results = core::tracks_of(experiment_of(clip, 0.0), 1);
+    const auto* const note = tests::note_of<core::InterlacedFilm>(results.tracks.at(0).notes);
+    REQUIRE((note != nullptr) == interlaced);
+    if (note != nullptr) CHECK(note->frame_rate_hz == kRate);
+  }
 }
 
 TEST_CASE("frames without the marker are noted, unless it is at the edge of the image there") {

@@ -76,6 +76,23 @@ TEST_CASE("duplicated frames above 10 % make a clip unusable, whether identical 
   }
 }
 
+TEST_CASE("repeats that the analysis leaves out are no obstacle where the times of the others hold") {
+  for (const bool in_place_of_lost : {true, false}) {
+    for (const double camera_hz : {0.0, 24.0}) {
+      core::ClipCheck clip = fine_clip();
+      clip.stalls = 20;
+      clip.seen -= 20;  // what is left out is not missing
+      clip.repeats = core::RepeatsLeftOut{20, 100, in_place_of_lost, camera_hz};
+      clip.notes = {*clip.repeats};
+      const auto findings = of_clip(clip);
+      REQUIRE(findings.size() == 1);
+      const bool hold = in_place_of_lost || camera_hz > 0.0;
+      CHECK(findings[0].severity == (hold ? core::Severity::change : core::Severity::unusable));
+      CHECK(found_as<core::found::FramesRepeated>(findings[0]).times_hold == hold);
+    }
+  }
+}
+
 TEST_CASE("light is named where the marker's contrast or the place of its brightness changes along the path") {
   core::ClipCheck clip = fine_clip();
   clip.top_speed_m_s = 1.0;

@@ -13,9 +13,9 @@
 #include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
-using namespace glidelab;
 using Catch::Matchers::Contains;
-using core::TrackData;
+using glidelab::core::TrackData;
+using namespace glidelab;
 
 namespace {
 
@@ -171,6 +171,47 @@ TEST_CASE("a recorded force keeps its places when unseen positions are left out"
   CHECK(track.force_n[11] == 11.0);
   CHECK(track.force_n[12] == 17.0);
   CHECK(track.t_s[12] == Approx(1.7));
+}
+
+TEST_CASE("the rows of a film that a converter brought to a higher rate get the camera's times") {
+  // 50 images a second in 60 rows a second; a recorded force keeps its places.
+  std::vector<double> t_s, x_m, force_n;
+  for (int row = 0; row < 120; ++row) {
+    const double seen_s = std::floor(50.0 / 60.0 * row + 0.2) / 50.0;
+    t_s.push_back(row / 60.0);
+    x_m.push_back(0.9 * seen_s - 0.15 * seen_s * seen_s);
+    force_n.push_back(seen_s);
+  }
+  const core::TrackData track = core::track_of_numbers(t_s, x_m, force_n, "clip");
+  REQUIRE(track.t_s.size() == 100);
+  CHECK(track.frame_rate_hz == Approx(50.0).epsilon(1e-9));
+  double worst_s = 0.0;
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+    worst_s = std::max(worst_s, std::abs(track.t_s[i] - track.t_s[0] - (track.force_n[i] - track.force_n[0])));
+  }
+  CHECK(worst_s < 1e-12);
+  const auto* const note = tests::note_of<core::RepeatsLeftOut>(track.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->repeats == 20);
+  CHECK(note->frames == 120);
+  CHECK(note->camera_hz == Approx(50.0).epsilon(1e-9));
+}
+
+TEST_CASE("rows that repeat the one before in place of lost frames are left out, and the others keep their times") {
+  std::vector<double> t_s, x_m;
+  for (int row = 0; row < 90; ++row) {
+    const bool lost = row % 13 == 7 || row % 17 == 11;
+    t_s.push_back(row / 30.0);
+    x_m.push_back(lost ? x_m.back() : 0.4 * t_s.back() + 0.05 * t_s.back() * t_s.back());
+  }
+  const core::TrackData track = core::track_of_numbers(t_s, x_m, {}, "clip");
+  const auto* const note = tests::note_of<core::RepeatsLeftOut>(track.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->in_place_of_lost);
+  CHECK(note->repeats == 90 - track.t_s.size());
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+    CHECK(track.x_m[i] == Approx(0.4 * track.t_s[i] + 0.05 * track.t_s[i] * track.t_s[i]).margin(1e-12));
+  }
 }
 
 namespace {

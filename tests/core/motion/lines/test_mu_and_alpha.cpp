@@ -55,3 +55,27 @@ TEST_CASE("where the mean of both intercepts is beyond gravity, neither mu nor a
     CHECK(why->mean_m_s2 == Approx(10.5).epsilon(1e-12));
   }
 }
+
+TEST_CASE("slopes that disagree make mu and alpha as uncertain as what they leave unexplained moves the intercepts") {
+  // The points of both lines have the mean speed 1.5 m/s, so that a slope that is off by d moves its intercept by
+  // 1.5 d, uphill and downhill with opposite signs.
+  const auto with_mean_speed = [](LineFit of) {
+    of.parts.var_a0 = 1.5 * 1.5 * of.parts.var_k + 1e-8;
+    of.parts.cov = of.direction * 1.5 * of.parts.var_k;
+    complete_line(of);
+    return of;
+  };
+  const double level = 0.02 * kG;  // mu
+  const auto found_with = [&](double apart) {
+    return mu_and_alpha_of_intercepts(with_mean_speed(line(-1, 2.0 + 0.5 * apart, level)),
+                                      with_mean_speed(line(1, 2.0 - 0.5 * apart, -level)), {kG, 0.0});
+  };
+  const double noise2 = 0.5 * (1.5 * 1.5 * 1e-4 + 1e-8) / (kG * kG);
+  const MuAndAlpha agree = found_with(0.02), disagree = found_with(0.2);
+  CHECK(agree.mu.estimate->sd == Approx(std::sqrt(noise2)).epsilon(1e-6));
+  // Each slope has (0.2² - 2 var_k) / 2 unexplained, but for what counts as rounding (1e-4 of the variances).
+  const double slopes2 = 0.5 * 1.5 * 1.5 * 0.5 * (0.04 - 2e-4) / (kG * kG);
+  CHECK(disagree.mu.estimate->sd == Approx(std::sqrt(noise2 + slopes2)).epsilon(1e-4));
+  CHECK(disagree.alpha_deg.estimate->sd == Approx(std::sqrt(noise2 + slopes2) * kDegrees).epsilon(1e-3));
+  CHECK(disagree.mu.estimate->value == Approx(agree.mu.estimate->value).epsilon(1e-12));
+}

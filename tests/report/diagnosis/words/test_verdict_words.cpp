@@ -227,3 +227,17 @@ TEST_CASE("so few clips have no interval, and the reason counts them") {
   intervals.too_few = 2;
   CHECK(report::too_few_words(intervals).starts_with("2 clips cannot show"));
 }
+
+TEST_CASE("a camera that the images show to drift is told with the verdict, unless its motion is named") {
+  diagnose::Diagnosis of;
+  of.none = 0.99;
+  diagnose::ImageFinding finding;
+  finding.fact = diagnose::image::Sway{diagnose::image::Sway::How::drifts, 2.1, 0.0, 0.0012};
+  of.images = {finding};
+  CHECK(contains(report::verdict_words(of), "The camera drifts: the images show up to 1.2 mm/s along the track"));
+  diagnose::Diagnosis named = of;
+  named.effects.emplace_back().equivalent_to = {"camera_motion"};
+  CHECK_FALSE(contains(report::verdict_words(named), "The camera drifts"));
+  std::get<diagnose::image::Sway>(of.images.front().fact).how = diagnose::image::Sway::How::rests;
+  CHECK_FALSE(contains(report::verdict_words(of), "The camera drifts"));
+}
