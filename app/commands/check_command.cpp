@@ -1,8 +1,10 @@
-/// glidelab check FOLDER|FILE: a look at a recording before any analysis; check.json and report.html out.
+/// glidelab check FOLDER|FILE…: a look at a recording before any analysis; check.json and report.html out.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
@@ -13,6 +15,7 @@
 #include "core/track/bare_track.h"
 #include "report/check/check_report.h"
 #include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::app {
 namespace {
@@ -21,15 +24,16 @@ namespace fs = std::filesystem;
 
 struct CheckOptions {
   CommonOptions common;
-  std::string input;
+  std::vector<std::string> inputs;
   core::TrackFileOptions bare;
 };
 
 void check(const CheckOptions& options) {
-  const fs::path out = output_folder(options.common, "check", options.input);
-  refuse_scenarios({options.input});
-  check_bare_options(options.bare, {options.input});
-  const core::Experiment experiment = core::read_tracks(options.input, options.bare);
+  const fs::path out = output_folder(options.common, "check", options.inputs.front());
+  refuse_scenarios(options.inputs);
+  check_bare_options(options.bare, options.inputs);
+  core::Experiment experiment = core::read_track_files({options.inputs.begin(), options.inputs.end()}, options.bare);
+  experiment.name = report::title_of(experiment.name, options.inputs.size());
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
@@ -45,8 +49,9 @@ void check(const CheckOptions& options) {
   print_answer(options.common.json ? json : report::check_text(found));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!found.usable) {
-    throw base::NotMet(
-        fmt::format("{}: not usable as it is; {} says what to change", options.input, (out / "report.html").string()));
+    throw base::NotMet(fmt::format("{}: not usable as it is; {} says what to change",
+                                   report::title_of(options.inputs.front(), options.inputs.size()),
+                                   (out / "report.html").string()));
   }
 }
 
@@ -58,8 +63,8 @@ void add_check(CLI::App& app, Command& chosen) {
       "check",
       "Check a recording before the analysis (pattern, marker, exposure, blur, frame times) and say what to change");
   command
-      ->add_option("RECORDING", options->input,
-                   "A folder that holds an experiment.toml, or a track file, as analyze takes it")
+      ->add_option("RECORDING", options->inputs,
+                   "A folder that holds an experiment.toml, or track files, as analyze takes them")
       ->type_name("DIR|FILE")
       ->required();
   add_bare_options(*command, options->bare);
@@ -67,7 +72,7 @@ void add_check(CLI::App& app, Command& chosen) {
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
   command->callback([options, &chosen] {
     chosen = [options] {
-      options->bare = with_masses(options->bare, {options->input});
+      options->bare = with_masses(options->bare, options->inputs);
       check(*options);
     };
   });

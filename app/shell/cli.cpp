@@ -82,7 +82,7 @@ int fail(int status, std::string_view message) {
   while (!message.empty() && message.back() == '\n') message.remove_suffix(1);
   do {
     const std::size_t newline = message.find('\n');
-    fmt::print(stderr, "{} {}\n", head, message.substr(0, newline));
+    tell(fmt::format("{} {}\n", head, message.substr(0, newline)));
     message.remove_prefix(newline == std::string_view::npos ? message.size() : newline + 1);
   } while (!message.empty());
   return status;
@@ -94,6 +94,8 @@ int run_command(const Command& command) {
     throw_if_interrupted();  // if a signal came since the program began
     command();
     return kDone;
+  } catch (const ReaderGone&) {
+    end_without_reader();
   } catch (const InterruptedKeeping& interrupt) {
     return fail(kInterrupted, interrupt.what());
   } catch (const base::Interrupted&) {
@@ -267,7 +269,7 @@ int run_words(int argc, char** argv) {
   group_commands(app);
   const std::vector<std::string> words = words_given(argc, argv);
   if (words.empty()) {
-    fmt::print(stderr, "{}", app.help());
+    tell(app.help());
     return kWrongCommandLine;
   }
   try {
@@ -285,7 +287,7 @@ int run_words(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const std::string unknown = misspelt(app, words);
     fail(kWrongCommandLine, unknown.empty() ? error.what() : unknown);
-    fmt::print(stderr, "Run glidelab --help for the commands, glidelab COMMAND --help for the options of one.\n");
+    tell("Run glidelab --help for the commands, glidelab COMMAND --help for the options of one.\n");
     return kWrongCommandLine;
   }
   return run_command(command);
@@ -295,7 +297,8 @@ int run_words(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   try {
-    catch_interrupts();  // first: from here on every command ends in the same way
+    hold_standard_streams();
+    catch_interrupts();  // from here on every command ends in the same way
     report_lost_memory(kEnvironmentFailed);
     return run_words(argc, argv);
   } catch (const std::bad_alloc&) {  // before a command runs; run_command() reports those of a command

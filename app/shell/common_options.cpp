@@ -188,7 +188,9 @@ std::string check_noise_m(const std::string& text) {
 
 void print_result(std::string_view text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0) base::throw_system_error("standard output", "cannot be written", errno);
+  if (written && std::fflush(stdout) == 0) return;
+  if (errno == EPIPE) throw ReaderGone();
+  base::throw_system_error("standard output", "cannot be written", errno);
 }
 
 void print_answer(std::string_view text) {
@@ -200,7 +202,7 @@ void print_answer(std::string_view text) {
 }
 
 void say(const CommonOptions& options, std::string_view line) {
-  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+  if (!options.quiet) tell(fmt::format("{}\n", line));
 }
 
 namespace {

@@ -90,7 +90,7 @@ std::string check_above_0(const std::string& text);
 /// For CLI11: why the text is not a plausible position noise in metres; empty if it is one.
 std::string check_noise_m(const std::string& text);
 
-/// Writes to standard output and flushes it; EnvironmentError if that fails.
+/// Writes to standard output and flushes it; EnvironmentError if that fails, ReaderGone if nobody reads it any more.
 void print_result(std::string_view text);
 
 /// The same for sentences and tables: on a terminal the sentences are wrapped to the width of the window. JSON stays,

@@ -1,5 +1,6 @@
 #include "app/shell/run_control.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -16,6 +17,7 @@
 #include <exception>
 #include <new>
 #include <thread>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/files/temporary_folders.h"
@@ -61,8 +63,7 @@ void end_what_does_not_end() {
   }
   if (keeping > 0 || !base::discard_temporary_folders()) return;  // ends after the current piece, or is about to end
   const char* const over_the_bar = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
-  fmt::print(stderr, "{}glidelab: error: interrupted; nothing was written\n", over_the_bar);
-  std::fflush(stderr);
+  tell(fmt::format("{}glidelab: error: interrupted; nothing was written\n", over_the_bar));
   ::_exit(kInterruptedStatus);
 }
 
@@ -121,6 +122,26 @@ void report_lost_memory(int status) {
   lost_memory_status = status;
   const std::terminate_handler before = std::set_terminate(end_what_cannot_go_on);
   if (before != end_what_cannot_go_on) usual_end = before;
+}
+
+void hold_standard_streams() {
+  // The lowest free number is given: each stream that is closed takes its own.
+  for (const auto& [stream, other_way] :
+       {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_RDONLY}}) {
+    if (::fcntl(stream, F_GETFD) == -1 && ::open("/dev/null", other_way) != stream) return;
+  }
+}
+
+void tell(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+void end_without_reader() {
+  base::discard_temporary_folders();
+  ::signal(SIGPIPE, SIG_DFL);
+  ::raise(SIGPIPE);
+  ::_exit(128 + SIGPIPE);  // if the signal is blocked
 }
 
 bool interrupted() {
@@ -209,8 +230,7 @@ void ProgressDisplay::clear() {
 
 void ProgressDisplay::erase_bar() {
   if (!bar_shown_) return;
-  fmt::print(stderr, "\r{:{}}\r", "", columns() - 1);
-  std::fflush(stderr);
+  tell(fmt::format("\r{:{}}\r", "", columns() - 1));
   bar_shown_ = false;
 }
 
@@ -218,8 +238,8 @@ void ProgressDisplay::end_stage(Clock::time_point now) {
   if (!verbose_ || stage_.empty()) return;
   erase_bar();
   const double processor_s = static_cast<double>(std::clock() - stage_clock_) / CLOCKS_PER_SEC;
-  fmt::print(stderr, "{}: took {:.2f} s, {:.3f} s of processor time\n", stage_,
-             std::chrono::duration<double>(now - stage_start_).count(), processor_s);
+  tell(fmt::format("{}: took {:.2f} s, {:.3f} s of processor time\n", stage_,
+                   std::chrono::duration<double>(now - stage_start_).count(), processor_s));
   stage_.clear();
 }
 
@@ -257,8 +277,7 @@ void ProgressDisplay::draw_bar(Clock::time_point now) {
                                  time_left(elapsed_s, fraction_), rate(elapsed_s));
   const auto room = static_cast<std::size_t>(std::max(columns() - 1, 10));
   line.resize(room, ' ');  // covers the previous text; cut if the terminal is narrow
-  fmt::print(stderr, "\r{}", line);
-  std::fflush(stderr);
+  tell(fmt::format("\r{}", line));
   bar_shown_ = true;
 }
 
@@ -268,8 +287,8 @@ void ProgressDisplay::print_line(Clock::time_point now) {
   last_shown_ = now;
   tenths_printed_ = tenths;
   const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
-  fmt::print(stderr, "{}: {} %{}{}\n", stage_, 10 * tenths, tenths < 10 ? time_left(elapsed_s, fraction_) : "",
-             rate(elapsed_s));
+  tell(fmt::format("{}: {} %{}{}\n", stage_, 10 * tenths, tenths < 10 ? time_left(elapsed_s, fraction_) : "",
+                   rate(elapsed_s)));
 }
 
 }  // namespace glidelab::app

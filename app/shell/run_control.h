@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -27,6 +28,24 @@ void catch_interrupts();
 /// From now on, if memory runs out where no exception may pass (in a function of a library that promises to throw
 /// none), the process ends as it does elsewhere without memory: with `status`, one message, and no unfinished output.
 void report_lost_memory(int status);
+
+/// Files that the command opens must not take the number of a standard stream that was closed (`2>&-`): what is meant
+/// for the stream would be written into them. Closed streams are opened so that nothing can be written to them. To be
+/// called before any file is opened.
+void hold_standard_streams();
+
+/// Writes to standard error. That it cannot be written (a pipe that nobody reads, a full disk) can be told to nobody
+/// and ends no work.
+void tell(std::string_view text);
+
+/// Nobody reads standard output any more, as in `glidelab analyze … | head -1`.
+class ReaderGone : public std::exception {
+ public:
+  const char* what() const noexcept override { return "standard output: nobody reads it"; }
+};
+
+/// Ends the process as other programs end there: by SIGPIPE, without a message. Results are in place by then.
+[[noreturn]] void end_without_reader();
 
 bool interrupted();
 

@@ -425,25 +425,29 @@ struct Interrupted {
   std::size_t count = 1;
 };
 
+/// A sensor that is slower than its logger.
+struct SlowSensor {
+  ValuesHeld values;
+};
+
 struct Smoothed {
   double share = 0.0;  ///< of the distance: the scatter is smaller
 };
 
 }  // namespace found
 
-using AnyFound =
-    std::variant<Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
-                 found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
-                 found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
-                 found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark,
-                 found::LittleContrast, found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls,
-                 found::ShadowEdge, found::LightFalls, found::LightFlickers, found::StrongCompression,
-                 found::Interlaced, found::OtherRateInFile, found::UnevenStamps, found::Jumps, found::FramesRepeated,
-                 found::AssumedForFile, found::NoPlumbAngle, found::MassesApart, found::MarkerSizeOff,
-                 found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
-                 found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians,
-                 found::WrongFrameRate, found::MotionFault, found::FallAboveGravity, found::LongRun, found::Pushed,
-                 found::SlowFrames, found::FallsSlowly, found::Gaps, found::Interrupted, found::Smoothed>;
+using AnyFound = std::variant<
+    Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
+    found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
+    found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
+    found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark, found::LittleContrast,
+    found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls, found::ShadowEdge, found::LightFalls,
+    found::LightFlickers, found::StrongCompression, found::Interlaced, found::OtherRateInFile, found::UnevenStamps,
+    found::Jumps, found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
+    found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
+    found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate,
+    found::MotionFault, found::FallAboveGravity, found::LongRun, found::Pushed, found::SlowFrames, found::FallsSlowly,
+    found::Gaps, found::Interrupted, found::Smoothed, found::SlowSensor>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

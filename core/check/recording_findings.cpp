@@ -220,8 +220,10 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     return setup.name == clip.name && !setup.incline_assumed;
   });
   for (const Note& note : clip.notes) {
+    const auto* const held = std::get_if<ValuesHeld>(&note);
+    if (held != nullptr) book.add(Severity::change, found::SlowSensor{*held});
     const bool reported =
-        std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
+        held != nullptr || std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
         std::holds_alternative<InterlacedFilm>(note) || (clip.images && std::holds_alternative<RepeatsLeftOut>(note)) ||
         (inclined && std::holds_alternative<HeightTaken>(note)) ||                  // asks whether it falls
         (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/held_values.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -87,18 +88,6 @@ double noise_of_steps(const FrameSteps& steps) {
     before = i;
   }
   return quantile(std::move(changes), kPart) / (kNormalAtPart * std::sqrt(6.0));
-}
-
-/// The step to which all positions are rounded; 0 if they are not.
-double rounding_of(const FrameSteps& steps) {
-  constexpr double kOff = 0.01;  // of it
-  double least = HUGE_VAL;
-  for (const double size : steps.size) {
-    if (size != 0.0) least = std::min(least, std::abs(size));
-  }
-  const bool rounded = std::ranges::all_of(
-      steps.size, [&](double size) { return std::abs(size / least - std::round(size / least)) < kOff; });
-  return rounded && std::isfinite(least) ? least : 0.0;
 }
 
 /// The usual whole step around point i.
@@ -266,7 +255,7 @@ std::optional<FrameRepeats> frame_repeats(std::span<const std::size_t> frame, st
   FrameSteps steps = frame_steps(frame, x);
   require_whole_steps_around(steps);
   const double least =
-      std::max({least_step, kLeastStepOverNoise * noise_of_steps(steps), kLeastOverRounding * rounding_of(steps)});
+      std::max({least_step, kLeastStepOverNoise * noise_of_steps(steps), kLeastOverRounding * common_step(steps.size)});
   std::size_t between = 0;
   FrameRepeats found;
   for (std::size_t i = 0; i < x.size(); ++i) {

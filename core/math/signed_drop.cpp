@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <optional>
 #include <span>
 
 #include "core/math/parabola.h"
@@ -85,6 +87,29 @@ double signed_speed(const std::vector<double>& v_m_s) {
     size += std::abs(v);
   }
   return std::abs(sum) < kHardlyTurns * size ? v_m_s.back() - v_m_s.front() : sum;
+}
+
+std::optional<std::size_t> lost_sign_at(std::span<const double> v) {
+  constexpr double kDip = 0.3, kNearZero = 0.05;  // of the lower of the highest speeds before and after
+  constexpr double kSlowReturn = 0.2;             // of kDip of the highest: a glider may return far more slowly
+  constexpr double kMostNearZero = 0.4;  // of the dip: a V has a sixth of its points below a sixth of its height
+  if (v.empty() || *std::min_element(v.begin(), v.end()) < 0.0) return {};
+  // The lowest between the first and the last speed that is fast: a rest at either end is no dip.
+  const double fast = kDip * *std::max_element(v.begin(), v.end());
+  const auto moves = [&](double one) { return one > kSlowReturn * fast; };
+  const auto first = std::find_if(v.begin(), v.end(), moves);
+  const auto last = std::find_if(v.rbegin(), v.rend(), moves).base();
+  if (first >= last) return {};
+  const auto lowest = std::min_element(first, last);
+  if (lowest == first) return {};
+  const double height = std::min(*std::max_element(v.begin(), lowest), *std::max_element(lowest, v.end()));
+  if (*lowest > kNearZero * height) return {};
+  const auto is_out = [&](double one) { return one > kDip * height; };
+  const auto from = std::find_if(std::make_reverse_iterator(lowest), v.rend(), is_out).base();
+  const auto to = std::find_if(lowest, v.end(), is_out);
+  const auto near_zero = std::count_if(from, to, [&](double one) { return one <= kNearZero * height; });
+  if (to == v.end() || static_cast<double>(near_zero) > kMostNearZero * static_cast<double>(to - from)) return {};
+  return static_cast<std::size_t>(lowest - v.begin());
 }
 
 }  // namespace glidelab::core

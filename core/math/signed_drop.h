@@ -9,6 +9,9 @@
 /// is below g.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace glidelab::core {
@@ -18,5 +21,9 @@ double signed_drop(const std::vector<double>& t_s, const std::vector<double>& x_
 
 /// The direction of these speeds as a sum, in m/s; if the body turns, that of their change.
 double signed_speed(const std::vector<double>& v_m_s);
+
+/// Speeds that are all positive, fall to 0 and rise again at once: they lost their sign at a turn, which is returned.
+/// At a rest between two motions in one direction, most speeds of the dip are near 0.
+std::optional<std::size_t> lost_sign_at(std::span<const double> v);
 
 }  // namespace glidelab::core

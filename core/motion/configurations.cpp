@@ -6,7 +6,10 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "base/math/angles.h"
 #include "core/math/least_squares.h"
@@ -227,6 +230,22 @@ bool has_points(const std::vector<MemberClip>& members) {
   return false;
 }
 
+/// Why the measured positions are left out.
+unknown::NoLine no_line(const std::vector<MemberClip>& members) {
+  unknown::NoLine why;
+  std::map<LeftOut, std::size_t> counts;
+  for (const MemberClip& member : members) {
+    for (const MotionPoint& point : member.clip->motion) {
+      if (!point.measured_m) continue;
+      ++why.positions;
+      if (point.left_out != LeftOut::used) ++counts[point.left_out];
+    }
+  }
+  why.left_out.assign(counts.begin(), counts.end());
+  std::ranges::stable_sort(why.left_out, std::greater{}, &std::pair<LeftOut, std::size_t>::second);
+  return why;
+}
+
 void recover(const std::vector<LineFit>& lines, const Gravity& gravity, const std::vector<MemberClip>& members,
              ConfigurationResult& result) {
   if (lines.empty() && has_points(members)) {
@@ -242,6 +261,7 @@ void recover(const std::vector<LineFit>& lines, const Gravity& gravity, const st
     return;
   }
   if (lines.empty()) {
+    result.k_over_m_1_s = undetermined(no_line(members));
     result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{.minus = true, .plus = true});
     return;
   }

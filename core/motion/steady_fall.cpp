@@ -1,5 +1,7 @@
 #include "core/motion/steady_fall.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +9,7 @@
 #include <variant>
 
 #include "base/math/angles.h"
+#include "base/math/dense.h"
 #include "core/experiment/clip_setup.h"
 #include "core/math/parabola.h"
 #include "core/motion/lines/line_fit.h"
@@ -16,7 +19,7 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestOfSteady = 5;
-constexpr double kSteady = 0.05;   // of g
+constexpr double kSteady = 0.1;    // of g: the next term of v_lim, (a/g)², is then below half of the laws' difference
 constexpr double kConstant = 0.1;  // of the speed: its change from the first position to the last
 constexpr double kSds = 2.0;
 
@@ -25,11 +28,44 @@ struct Measured {
   double by_law = 0.0;  ///< half of the difference between the two laws of drag, common to all clips
 };
 
+/// Whether the body moves freely there. A parabola through positions needs no kernel, so that points count whose
+/// kernel reaches too far or holds too few frames.
+bool is_free(LeftOut reason) {
+  switch (reason) {
+    case LeftOut::used:
+    case LeftOut::kernel_end:
+    case LeftOut::kernel_reversal:
+    case LeftOut::kernel_gap:
+    case LeftOut::short_stretch:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Of the parabola's v and a, per variance of one position.
+struct Variances {
+  double v = 0.0, a = 0.0;
+};
+
+/// Exact for any times: in a clip with gaps, most points may lie at its ends.
+Variances variances_at(const std::vector<double>& t_s, double middle_s) {
+  const double half_s = 0.5 * (t_s.back() - t_s.front());
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  for (const double at_s : t_s) {
+    const double u = (at_s - middle_s) / half_s;
+    const Eigen::Vector3d row(1.0, u, 0.5 * u * u);
+    normal += row * row.transpose();
+  }
+  const Eigen::MatrixXd inverse = base::inverse_positive(normal);
+  return {inverse(1, 1) / (half_s * half_s), inverse(2, 2) / std::pow(half_s, 4)};
+}
+
 /// v_lim of one clip; empty if it does not fall at a constant speed.
 std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2) {
   std::vector<double> t_s, x_m;
   for (const MotionPoint& point : clip.motion) {
-    if (point.left_out != LeftOut::used || !point.measured_m) continue;
+    if (!is_free(point.left_out) || !point.measured_m) continue;
     t_s.push_back(point.t_s);
     x_m.push_back(*point.measured_m);
   }
@@ -40,7 +76,8 @@ std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2
   for (std::size_t i = 0; i < t_s.size(); ++i) squares += std::pow(x_m[i] - parabola.at(t_s[i]), 2);
   const double noise2 = std::max(std::pow(clip.position_noise_m, 2), squares / (n - 3.0));
   const double span_s = t_s.back() - t_s.front();
-  const double var_v = 12.0 * noise2 / (n * span_s * span_s), var_a = 720.0 * noise2 / (n * std::pow(span_s, 4));
+  const Variances of_one = variances_at(t_s, parabola.middle_s);
+  const double var_v = of_one.v * noise2, var_a = of_one.a * noise2;
   const double v = parabola.v, by_g = parabola.a / gravity_m_s2, sd_by_g = std::sqrt(var_a) / gravity_m_s2;
   if (!(v > 0.0) || !(std::abs(by_g) + kSds * sd_by_g < kSteady)) return {};
   // A liquid drives a body by far less than its weight, so that a small part of g may still change its speed.

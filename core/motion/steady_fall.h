@@ -10,10 +10,10 @@ namespace glidelab::core {
 /// Gives configurations of falls their terminal velocity from the mean speed, where the lines or the fit of the whole
 /// motion gave none, and notes that (SteadyFall), in place of notes that it added before.
 ///
-/// A parabola through the used positions of each clip has the speed v and the acceleration a at their middle. The fall
-/// is steady if a + 2 sd < 0.05 g and a - 2 sd > -0.05 g in every clip, and if no a of more than two of its standard
-/// deviations changes v by more than a tenth from the first position to the last. At such a speed, a drag in proportion
-/// to v or to v² leaves
+/// A parabola through the free positions of each clip has the speed v and the acceleration a at their middle. It needs
+/// no kernel: positions count whose kernel reaches over an end or a gap. The fall is steady if a + 2 sd < 0.1 g and
+/// a - 2 sd > -0.1 g in every clip, and if no a of more than two of its standard deviations changes v by more than a
+/// tenth from the first position to the last. At such a speed, a drag in proportion to v or to v² leaves
 ///
 ///     v_lim = v (1 + a/g)    or    v_lim = v (1 + a/(2 g)),
 ///

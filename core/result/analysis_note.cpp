@@ -12,7 +12,8 @@ bool is_of_reading(const Note& note) {
   return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<PositionsAstray>(note) ||
          std::holds_alternative<ColumnsGuessed>(note) || std::holds_alternative<PathBends>(note) ||
          std::holds_alternative<OtherAxisUnused>(note) || std::holds_alternative<RepeatsLeftOut>(note) ||
-         std::holds_alternative<InterlacedFilm>(note);
+         std::holds_alternative<InterlacedFilm>(note) || std::holds_alternative<TimesRepeated>(note) ||
+         std::holds_alternative<ValuesHeld>(note);
 }
 
 }  // namespace glidelab::core

@@ -114,6 +114,18 @@ struct RowsIncomplete {
   std::size_t rows = 0;
 };
 
+/// Rows with the time of the row above, left out.
+struct TimesRepeated {
+  std::size_t rows = 0;
+  double first_s = 0.0;
+};
+
+/// Rows that repeat the value before while the body moves on, left out: a sensor that is slower than its logger.
+struct ValuesHeld {
+  std::size_t held = 0, rows = 0;
+  std::size_t usual = 0;  ///< rows from one value to the next
+};
+
 /// Rows of a table in which its own measure of certainty is below `least`, and that are left out.
 struct UnlikelyLeftOut {
   std::string column;  ///< of the measure
@@ -436,7 +448,7 @@ using AnyNote =
                  DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
                  FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
                  GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
-                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
+                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun, TimesRepeated, ValuesHeld>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -2,13 +2,17 @@
 /// it into words.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 #include "core/result/analysis_note.h"
 
 namespace glidelab::core {
+
+enum class LeftOut;  // core/result/results.h
 
 namespace unknown {
 
@@ -20,7 +24,10 @@ struct Told {
 // From the lines of the phase diagram.
 
 /// Neither direction has a line.
-struct NoLine {};
+struct NoLine {
+  std::size_t positions = 0;                                ///< measured, in all clips; 0 if not counted
+  std::vector<std::pair<LeftOut, std::size_t>> left_out{};  ///< how many of them for which reason, the most first
+};
 
 /// The terminal velocity follows from the line for v > 0.
 struct NoDownhillLine {};

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/math/angles.h"
@@ -148,6 +149,28 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
     experiment.clips = clips_of_runs(path, clip, options);
   }
   return experiment;
+}
+
+Experiment read_track_files(const std::vector<std::filesystem::path>& paths, const TrackFileOptions& options) {
+  if (paths.size() > 1) {
+    std::error_code ignored;  // of a path that cannot be read, read_tracks() tells
+    for (const std::filesystem::path& path : paths) {
+      if (!std::filesystem::is_directory(path, ignored) && path.filename() != "experiment.toml") continue;
+      throw base::InputError(
+          base::Issue{path.string(), 0, "", "a folder among several recordings", "files with a track, or one folder"});
+    }
+  }
+  Experiment all = read_tracks(paths.front(), options);
+  std::set<std::string> names;
+  for (const ClipSetup& clip : all.clips) names.insert(clip.name);
+  for (std::size_t i = 1; i < paths.size(); ++i) {
+    for (ClipSetup& clip : read_tracks(paths[i], options).clips) {
+      const std::string name = clip.name;
+      for (int number = 2; !names.insert(clip.name).second; ++number) clip.name = fmt::format("{} ({})", name, number);
+      all.clips.push_back(std::move(clip));
+    }
+  }
+  return all;
 }
 
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,

@@ -55,6 +55,10 @@ std::vector<TrackRun> runs_in(const std::filesystem::path& file);
 /// that the file does not have, and if the numbers of masses and runs differ.
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options);
 
+/// Of several files, one experiment with the clips of all, named after the first. Clips of one name are numbered.
+/// InputError for a folder, whose camera is its own, among several paths, and as in read_tracks().
+Experiment read_track_files(const std::vector<std::filesystem::path>& paths, const TrackFileOptions& options);
+
 /// Reads a motion that was tracked elsewhere, from any supported file.
 ///
 /// For a Tracker project (looks_like_tracker_project()) read_tracker_project(), for any other file read_track_csv().

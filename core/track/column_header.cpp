@@ -10,6 +10,7 @@
 
 #include "base/text/readable_text.h"
 #include "core/experiment/file_names.h"
+#include "core/track/number_field.h"
 
 namespace glidelab::core {
 namespace {
@@ -252,7 +253,95 @@ void split_parts(std::vector<TableColumn>& columns) {
   }
 }
 
+/// Bodies before their axes: "cart X", "cart Y". Of a single axis, the words may be a name.
+void split_axes(std::vector<TableColumn>& columns) {
+  const auto body_of = [](const TableColumn& column, char axis) -> std::string {
+    const std::size_t size = column.name.size();
+    const bool ends = size > 2 && column.name[size - 2] == ' ' && lower(column.name).back() == axis;
+    return ends && column.run.empty() ? column.name.substr(0, size - 2) : std::string();
+  };
+  std::vector<std::string> bodies;
+  for (const TableColumn& column : columns) {
+    const std::string body = body_of(column, 'x');
+    const auto is_y = [&](const TableColumn& other) { return body_of(other, 'y') == body; };
+    if (!body.empty() && !is_place_column(column) && std::ranges::any_of(columns, is_y)) bodies.push_back(body);
+  }
+  for (TableColumn& column : columns) {
+    for (const char axis : {'x', 'y', 'z'}) {
+      const std::string body = body_of(column, axis);
+      if (body.empty() || std::ranges::find(bodies, body) == bodies.end()) continue;
+      column.run = body;
+      column.name = std::string(1, axis);
+      break;
+    }
+  }
+}
+
+/// "FREQUENCY", "Frame rate".
+bool is_frame_rate(std::string_view key) {
+  static constexpr std::array<std::string_view, 9> kNames{"frequency",  "frame rate",  "framerate",
+                                                          "frame_rate", "fps",         "sample rate",
+                                                          "samplerate", "sample_rate", "sampling rate"};
+  return std::ranges::find(kNames, lower(trimmed(key))) != kNames.end();
+}
+
+std::size_t filled(const std::vector<std::string>& line) {
+  return static_cast<std::size_t>(std::ranges::count_if(line, [](const std::string& field) { return !field.empty(); }));
+}
+
+/// A name and numbers, perhaps with words between.
+bool is_statement(const std::vector<std::string>& line) {
+  const auto is_number = [](const std::string& field) { return number_in(field, '.').has_value(); };
+  return line.size() > 1 && !line.front().empty() && !is_number(line.front()) &&
+         std::any_of(line.begin() + 1, line.end(), is_number);
+}
+
+/// A name and words, with nothing left empty between them, unlike a line of runs above their columns.
+bool may_be_statement(const std::vector<std::string>& line) {
+  return filled(line) > 1 && std::is_partitioned(line.begin(), line.end(), [](const auto& f) { return !f.empty(); });
+}
+
+constexpr const char* kMarkerNames = "MARKER_NAMES";
+
+/// Names and units of Qualisys's columns: those of its header, which may hold frames and times besides, or of the
+/// markers where it was not exported. Empty if they do not fit the numbers.
+std::vector<std::vector<std::string>> markers_header(const std::vector<std::string>& markers,
+                                                     const std::vector<std::string>& names, std::size_t width) {
+  std::vector<std::string> columns = names, units;
+  if (names.front() == kMarkerNames || names.front() == "TRAJECTORY_TYPES") {
+    columns.clear();
+    for (const std::string& marker : markers) {
+      for (const char* axis : {" X", " Y", " Z"}) columns.push_back(marker + axis);
+    }
+    if (columns.size() != width) return {};
+  }
+  for (const std::string& column : columns) {
+    const bool of_marker =
+        std::ranges::any_of(markers, [&](const auto& name) { return column.starts_with(name + " "); });
+    units.emplace_back(of_marker ? "mm" : "");
+  }
+  return {std::move(columns), std::move(units)};
+}
+
 }  // namespace
+
+StatedAbove without_statements(std::vector<std::vector<std::string>> lines, std::size_t width) {
+  auto first = std::find_if(lines.rbegin(), lines.rend(), is_statement).base();
+  if (first == lines.begin() || first == lines.end()) return {std::move(lines)};  // none; or columns named by numbers
+  StatedAbove found;
+  std::vector<std::string> markers;
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    if (line->front() == kMarkerNames) markers.assign(line->begin() + 1, line->end());
+    if (line >= first || !is_frame_rate(line->front())) continue;
+    const std::optional<double> rate_hz = number_in((*line)[1], '.');
+    if (rate_hz && *rate_hz > 0.0) found.frame_rate_hz = rate_hz;
+  }
+  std::erase(markers, std::string());
+  while (may_be_statement(*first) && filled(*first) < filled(lines.back())) ++first;
+  found.header.assign(first, lines.end());
+  if (!markers.empty()) found.header = markers_header(markers, found.header.back(), width);
+  return found;
+}
 
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
   if (std::vector<TableColumn> parts = columns_of_body_parts(lines, width); !parts.empty()) return parts;
@@ -284,6 +373,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
     if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
   }
   split_parts(columns);
+  split_axes(columns);
   return columns;
 }
 

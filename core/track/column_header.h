@@ -28,6 +28,7 @@ struct ColumnTable {
   std::vector<int> line;             ///< of each data line, 1-based
   std::string sheet = {};            ///< of a workbook with several
   std::size_t dates = 0;             ///< cells of a workbook left empty because they show a date or a time of day
+  std::optional<double> frame_rate_hz = {};  ///< as a line above the header states it
 };
 
 /// Units of length and time as tables state them: symbols, and words in English, German, French, Spanish, Portuguese
@@ -71,6 +72,17 @@ bool is_sensor_column(const TableColumn& column);
 /// but the names may be missing. DeepLabCut has lines of its own, which begin with "bodyparts" and "coords": a run is
 /// then a part of the body, in pixels.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
+
+/// The lines above the numbers, without statements such as "FREQUENCY 500", and what these state.
+struct StatedAbove {
+  std::vector<std::vector<std::string>> header;
+  std::optional<double> frame_rate_hz = {};
+};
+
+/// A statement is a line of a name and numbers. Behind it, shorter lines than the last one are statements as well: the
+/// header is what stands just above the numbers. Qualisys (a line MARKER_NAMES) writes x, y and z of each marker in
+/// millimetres, below a header "cart X", or below none; the lines that are returned then say so.
+StatedAbove without_statements(std::vector<std::vector<std::string>> lines, std::size_t width);
 
 /// Whether all that is there of a header line are units: "[s]", "m", "m/s".
 bool holds_units(const std::vector<std::string>& line);

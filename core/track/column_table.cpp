@@ -343,6 +343,17 @@ void drop_empty_columns_at_end(ColumnTable& table) {
   while (!table.columns.empty() && is_empty(table.columns.back())) table.columns.pop_back();
 }
 
+/// A stated rate counts where no column holds times. Where none counts frames either, each row is one.
+void take_frame_rate(std::optional<double> rate_hz, ColumnTable& table) {
+  if (!rate_hz || std::ranges::any_of(table.columns, is_time_column)) return;
+  table.frame_rate_hz = rate_hz;
+  if (std::ranges::any_of(table.columns, is_frame_column)) return;
+  TableColumn rows;
+  rows.text = rows.name = "frame";
+  for (std::size_t row = 0; row < table.line.size(); ++row) rows.values.emplace_back(static_cast<double>(row));
+  table.columns.push_back(std::move(rows));
+}
+
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
@@ -404,6 +415,8 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
     if (format->delimiter == kBlanks && !as_wide) continue;  // words of a title
     header.emplace_back(rows[r].begin(), rows[r].end());
   }
+  StatedAbove stated = without_statements(std::move(header), rows[first_data].size());
+  header = std::move(stated.header);
   if (header.empty()) header = commented_header(read.comments, lines[first_data].number, width, *format);
   table.has_header = !header.empty();
   const auto ends_without = [&](const auto& row) {
@@ -454,6 +467,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   const bool times_of_day = count_times_of_day(table, clock);
   drop_empty_columns_at_end(table);
   put_side_by_side(table, times_of_day);
+  take_frame_rate(stated.frame_rate_hz, table);
   return table;
 }
 

@@ -424,6 +424,12 @@ std::optional<std::size_t> first_repeated(const TableColumn& times) {
   return {};
 }
 
+bool repeats_seldom(const TableColumn& times) {
+  constexpr std::size_t kOneIn = 20;
+  const std::vector<double> steps = steps_of(times);
+  return static_cast<std::size_t>(std::ranges::count(steps, 0.0)) <= std::max<std::size_t>(1, steps.size() / kOneIn);
+}
+
 bool rises_mostly(const TableColumn& times) {
   const std::vector<double> steps = steps_of(times);
   return 2 * static_cast<std::size_t>(std::ranges::count_if(steps, goes_up)) >= steps.size();

@@ -56,6 +56,10 @@ double seconds_of(const ColumnTable& table, const TableColumn& column, std::vect
 /// rounded, or rows that stand twice. Empty for others.
 std::optional<std::size_t> first_repeated(const TableColumn& times);
 
+/// Whether at most one step in twenty is 0, or one in all: rows that stand twice. More of them are times that were
+/// rounded.
+bool repeats_seldom(const TableColumn& times);
+
 /// Whether at least half of the steps are positive. Otherwise these are not times at all, rather than times with an
 /// error among them.
 bool rises_mostly(const TableColumn& times);

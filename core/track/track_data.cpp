@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -20,6 +19,7 @@
 #include "core/math/even_times.h"
 #include "core/math/false_positions.h"
 #include "core/math/frame_repeats.h"
+#include "core/math/held_values.h"
 #include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
 #include "core/track/column_table.h"
@@ -85,33 +85,54 @@ void leave_out_false_positions(TrackData& track) {
 
 namespace {
 
+/// The row of each time, counted by the median step; empty if the times do not lie on rows.
+std::vector<std::size_t> rows_of(const std::vector<double>& t_s) {
+  constexpr double kMostUneven = 0.1;  // of a row
+  const double step_s = median_step(t_s);
+  if (!(step_s > 0.0)) return {};
+  std::vector<std::size_t> row(t_s.size());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double steps = (t_s[i] - t_s.front()) / step_s;
+    row[i] = static_cast<std::size_t>(std::lround(steps));
+    if (std::abs(steps - std::round(steps)) > kMostUneven || (i > 0 && row[i] <= row[i - 1])) return {};
+  }
+  return row;
+}
+
 /// Rows of a film that repeats frames (core/math/frame_repeats.h); their times become the camera's.
 void leave_out_repeated_rows(TrackData& track) {
-  constexpr double kMostUneven = 0.1;  // of a row
-  const double step_s = median_step(track.t_s);
-  if (track.x_m.empty() || !(step_s > 0.0)) return;
-  std::vector<std::size_t> row(track.t_s.size());
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const double steps = (track.t_s[i] - track.t_s.front()) / step_s;
-    row[i] = static_cast<std::size_t>(std::round(steps));
-    if (std::abs(steps - std::round(steps)) > kMostUneven || (i > 0 && row[i] <= row[i - 1])) return;
-  }
+  const std::vector<std::size_t> row = rows_of(track.t_s);
+  if (row.size() != track.x_m.size() || row.empty()) return;
   const std::optional<FrameRepeats> repeats = frame_repeats(row, track.x_m);
   if (!repeats) return;
   RepeatsLeftOut note{repeats->points.size(), track.t_s.size(), repeats->in_place_of_lost, 0.0};
   if (const auto& cadence = repeats->cadence) {
+    const double step_s = median_step(track.t_s);
     note.camera_hz = cadence->rate_ratio / step_s;
     for (std::size_t i = 0; i < row.size(); ++i) track.t_s[i] -= step_s * cadence->early_frames(row[i]);
   }
+  track.notes.emplace_back(note);
   std::vector<bool> flagged(track.t_s.size(), false);
   for (const std::size_t point : repeats->points) flagged[point] = true;
   leave_out(flagged, track);
-  track.notes.emplace_back(note);
+}
+
+/// Rows in which a logger repeats what a slower sensor gave before (core/math/held_values.h). A converter's film is not
+/// of that kind: its cadence tells the camera's times.
+void leave_out_held_values(TrackData& track) {
+  constexpr std::size_t kMostOfFilm = 3;  // frames for each of the camera's images
+  const std::optional<HeldValues> held = held_values(track.x_m);
+  const std::vector<std::size_t> row = rows_of(track.t_s);
+  const std::optional<FrameRepeats> repeats = row.empty() ? std::nullopt : frame_repeats(row, track.x_m);
+  if (!held || (held->usual <= kMostOfFilm && repeats && repeats->cadence)) return;
+  track.notes.emplace_back(ValuesHeld{held->count, track.x_m.size(), held->usual});
+  leave_out(held->is_held, track);
 }
 
 }  // namespace
 
 void take_rows_as_frames(TrackData& track) {
+  leave_out_held_values(track);
   leave_out_false_positions(track);
   put_even(track);
   leave_out_repeated_rows(track);
@@ -198,35 +219,15 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 
 namespace {
 
-/// InputError for speeds that are all positive, fall to 0 and rise again at once: they lost their sign at a turn. At a
-/// rest between two motions in one direction, most speeds of the dip are near 0.
+/// InputError for speeds that lost their sign at a turn.
 void check_signs(const TrackData& track, int downhill, const std::string& file, const std::string& column) {
-  constexpr double kDip = 0.3, kNearZero = 0.05;  // of the lower of the highest speeds before and after
-  constexpr double kSlowReturn = 0.2;             // of kDip of the highest: a glider may return far more slowly
-  constexpr double kMostNearZero = 0.4;  // of the dip: a V has a sixth of its points below a sixth of its height
-  if (track.v_m_s.empty()) return;
   std::vector<double> v = track.v_m_s;
   for (double& one : v) one *= downhill;
-  if (*std::min_element(v.begin(), v.end()) < 0.0) return;
-  // The lowest between the first and the last speed that is fast: a rest at either end is no dip.
-  const double fast = kDip * *std::max_element(v.begin(), v.end());
-  const auto moves = [&](double one) { return one > kSlowReturn * fast; };
-  const auto first = std::find_if(v.begin(), v.end(), moves);
-  const auto last = std::find_if(v.rbegin(), v.rend(), moves).base();
-  if (first >= last) return;
-  const auto lowest = std::min_element(first, last);
-  if (lowest == first) return;
-  const double height = std::min(*std::max_element(v.begin(), lowest), *std::max_element(lowest, v.end()));
-  if (*lowest > kNearZero * height) return;
-  const auto is_out = [&](double one) { return one > kDip * height; };
-  const auto from = std::find_if(std::make_reverse_iterator(lowest), v.rend(), is_out).base();
-  const auto to = std::find_if(lowest, v.end(), is_out);
-  const auto near_zero = std::count_if(from, to, [&](double one) { return one <= kNearZero * height; });
-  if (to == v.end() || static_cast<double>(near_zero) > kMostNearZero * static_cast<double>(to - from)) return;
+  const std::optional<std::size_t> turn = lost_sign_at(v);
+  if (!turn) return;
   throw base::InputError(
       base::Issue{file, 0, column,
-                  fmt::format("speeds without sign (none is negative, and they touch 0 at {:.3g} s)",
-                              track.t_s[static_cast<std::size_t>(lowest - v.begin())]),
+                  fmt::format("speeds without sign (none is negative, and they touch 0 at {:.3g} s)", track.t_s[*turn]),
                   "velocities, negative in one direction: without a sign, up cannot be told from down"});
 }
 
@@ -266,12 +267,13 @@ struct OfImages {
   double frame_rate_hz = 0.0, px_per_m = 0.0;  ///< 0 for what the table has itself
 };
 
-/// What of `units` the chosen columns need. InputError for what was stated for this table and is not needed.
-OfImages needed_of(const ImageUnits& units, const std::string& file, const TableColumn& x, const TableColumn& t,
-                   bool of_speeds) {
+/// What of `units` the chosen columns need; the rate that the table states itself, where none is stated for it.
+/// InputError for what was stated for this table and is not needed.
+OfImages needed_of(const ImageUnits& units, std::optional<double> stated_hz, const std::string& file,
+                   const TableColumn& x, const TableColumn& t, bool of_speeds) {
   OfImages needed;
   const bool frames = is_frame_column(t);
-  if (frames) needed.frame_rate_hz = units.frame_rate_hz.value_or(0.0);
+  if (frames) needed.frame_rate_hz = units.frame_rate_hz.value_or(stated_hz.value_or(0.0));
   // A scale of a folder, which may be that of its films, is not that of a table with times of its own.
   const bool in_pixels = is_pixels(x.unit) || (x.unit.empty() && (units.for_this_table || frames));
   if (in_pixels && !of_speeds) needed.px_per_m = units.px_per_m.value_or(0.0);
@@ -312,7 +314,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   ColumnTable table = read_column_table(file);
   TrackData track;
   if (!table.sheet.empty()) track.notes.emplace_back(SheetTaken{table.sheet});
-  const FrameNumbers frame_numbers = units.frame_rate_hz ? FrameNumbers::are_times : FrameNumbers::are_no_times;
+  const FrameNumbers frame_numbers =
+      units.frame_rate_hz || table.frame_rate_hz ? FrameNumbers::are_times : FrameNumbers::are_no_times;
   const std::vector<UnlikelyLeftOut> unlikely = leave_out_unlikely(table);
   const std::optional<ChosenColumns> of_speeds =
       speeds == SpeedsAlone::taken ? choose_speeds(table, column, frame_numbers) : std::nullopt;
@@ -322,7 +325,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   if (is_sensor_column(x)) track.sensor_column = x.text;
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
-  const OfImages of_images = needed_of(units, table.file, x, t, of_speeds.has_value());
+  const OfImages of_images = needed_of(units, table.frame_rate_hz, table.file, x, t, of_speeds.has_value());
   const double metres = downhill.value_or(1) * (of_speeds                  ? metres_per_second_of(table, x, track.notes)
                                                 : of_images.px_per_m > 0.0 ? 1.0 / of_images.px_per_m
                                                                            : metres_of(table, x, track.notes));
@@ -369,6 +372,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   std::vector<int> lines;
   std::vector<double>& values = of_speeds ? track.v_m_s : track.x_m;
   std::size_t missing = 0, missing_so_far = 0;
+  const bool may_repeat = repeats_seldom(t);
+  TimesRepeated repeated;
   for (std::size_t row = 0; row < table.line.size(); ++row) {
     if (!x.values[row] || !y.values[row] || !t.values[row]) {
       ++missing_so_far;
@@ -377,6 +382,10 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     if (!lines.empty()) missing += missing_so_far;
     missing_so_far = 0;
     const double at = *t.values[row] * seconds;
+    if (!lines.empty() && at == track.t_s.back() && may_repeat) {
+      if (repeated.rows++ == 0) repeated.first_s = at;
+      continue;
+    }
     if (!lines.empty() && at <= track.t_s.back() && issues.size() < kMostRowIssues) {
       issues.push_back({table.file, table.line[row], fmt::format("column \"{}\"", t.text),
                         fmt::format("{}", *t.values[row]), fmt::format("a time above that of line {}", lines.back())});
@@ -407,6 +416,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   check_signs(track, downhill.value_or(1), table.file, fmt::format("column \"{}\"", x.text));
   if (missing > 0) track.notes.emplace_back(RowsIncomplete{missing});
+  if (repeated.rows > 0) track.notes.emplace_back(repeated);
   take_rows_as_frames(track);
   return track;
 }

@@ -8,6 +8,7 @@
 #include <variant>
 #include "base/text/number_text.h"
 #include "core/result/results.h"
+#include "report/analysis/row_words.h"
 #include "report/analysis/statement_words.h"
 #include "report/text/why_words.h"
 
@@ -99,15 +100,10 @@ struct AnalysisSentence {
   std::string operator()(const core::CountedAlongMotion&) const {
     return "x is counted along the motion, so its sign is reversed";
   }
-  std::string operator()(const core::RowsIncomplete& of) const {
-    if (of.rows == 1) return "one row within the table lacks a time or x and is left out";
-    return fmt::format("{} rows within the table lack a time or x and are left out", of.rows);
-  }
-  std::string operator()(const core::UnlikelyLeftOut& of) const {
-    return fmt::format(
-        "{} row{} with a \"{}\" below {:.3g} {} left out: the program that followed the body was not sure of it",
-        of.rows, of.rows == 1 ? "" : "s", of.column, of.least, of.rows == 1 ? "is" : "are");
-  }
+  std::string operator()(const core::RowsIncomplete& of) const { return row_words(of); }
+  std::string operator()(const core::TimesRepeated& of) const { return row_words(of); }
+  std::string operator()(const core::ValuesHeld& of) const { return row_words(of); }
+  std::string operator()(const core::UnlikelyLeftOut& of) const { return row_words(of); }
   std::string operator()(const core::ImageUnitsTaken& of) const {
     std::string text;
     if (of.frame_rate_hz > 0.0)

@@ -13,6 +13,7 @@
 #include "core/result/results.h"
 #include "core/result/uphill.h"
 #include "report/analysis/note_words.h"
+#include "report/analysis/row_words.h"
 #include "report/analysis/statement_words.h"
 #include "report/text/why_words.h"
 
@@ -399,6 +400,10 @@ struct FindingSentence {
                     "acts only there",
                     instant_text(of.from_s), instant_text(of.to_s), more),
         "let it run freely, or make each free run a clip of its own, with start_s and end_s"};
+  }
+  FindingWords operator()(const found::SlowSensor& of) const {
+    return {report::row_words(of.values),
+            "log at the rate of the sensor; where rows come faster, an analysis sees steps in place of a motion"};
   }
   FindingWords operator()(const found::Smoothed& of) const {
     return {

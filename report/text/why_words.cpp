@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
 #include <variant>
+
+#include "core/result/results.h"
 
 namespace glidelab::report {
 namespace {
@@ -19,7 +22,23 @@ const char* incline_words(bool would_do) {
 struct ReasonWords {
   std::string operator()(const unknown::Told& of) const { return of.text; }
 
-  std::string operator()(const unknown::NoLine&) const { return "no line: neither direction has enough usable points"; }
+  std::string operator()(const unknown::NoLine& of) const {
+    std::string text = "no line: neither direction has enough usable points";
+    bool gaps = false;
+    const char* before = "; left out are ";
+    for (const auto& [reason, count] : of.left_out) {
+      text += fmt::format("{}{}{} ({})", std::exchange(before, ", "), count,
+                          &reason == &of.left_out.front().first ? fmt::format(" of {} positions", of.positions) : "",
+                          core::describe(reason));
+      gaps = gaps || reason == core::LeftOut::kernel_gap;
+    }
+    if (gaps) {
+      text +=
+          ". The smoothing needs positions at an even rate; the fit of the whole motion does not (--estimator "
+          "trajectory)";
+    }
+    return text;
+  }
   std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
   std::string operator()(const unknown::SpeedHardlyChanges&) const {
     return "the speed hardly changes in the positions that are used, so they determine no slope";

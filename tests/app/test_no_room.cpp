@@ -112,3 +112,35 @@ TEST_CASE("help, version, manual page and completion on a full standard output a
     CHECK(says(result, "standard output: cannot be written: No space left"));
   }
 }
+
+TEST_CASE("a command whose output nobody reads ends like other programs there, with its results in place") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const auto run = [&](const std::string& command) {
+    fs::remove_all(temp / "out");
+    return tests::run({"sh", "-c", command, tests::kBinary, (temp / "made").string(), (temp / "out").string(),
+                       (temp / "text").string(), (temp / "status").string()});
+  };
+  const auto status = [&] { return base::read_file(temp / "status"); };
+  constexpr const char* kBySigpipe = "141\n";  // 128 + 13, as a shell reports it
+  run("{ \"$0\" analyze \"$1\" --out \"$2\"; echo $? > \"$4\"; } 2>&1 | true");
+  CHECK(status() == kBySigpipe);
+  CHECK(fs::exists(temp / "out/results.json"));
+
+  run("{ \"$0\" analyze \"$1\" --out \"$2\" 2>&1 > \"$3\"; echo $? > \"$4\"; } | true");  // only the progress is lost
+  CHECK(status() == "0\n");
+  CHECK(base::read_file(temp / "text").starts_with("K/m = "));
+
+  // A closed stream, whose number a file would take.
+  for (const char* closed : {"2>&-", "2>&- <&-"}) {
+    CAPTURE(closed);
+    const tests::ProcessResult result = run(std::string("\"$0\" analyze \"$1\" --out \"$2\" --verbose ") + closed);
+    CHECK(result.status == 0);
+    CHECK(result.out.starts_with("K/m = "));
+    for (const fs::directory_entry& file : fs::directory_iterator(temp / "out")) {
+      CAPTURE(file.path());
+      CHECK(base::read_file(file.path()).find("of processor time") == std::string::npos);
+    }
+  }
+  CHECK(run("\"$0\" analyze \"$1\" --out \"$2\" >&-").status == 3);
+}

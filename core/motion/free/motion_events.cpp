@@ -113,6 +113,7 @@ class RunFinder {
  private:
   double span_s(const PointRange& range) const { return motion_.t_s[range.to - 1] - motion_.t_s[range.from]; }
   double least_distance() const { return kLeastMotion * motion_.noise_m; }
+  double distance_over(const PointRange& range) const { return pilot_.x_m[range.to - 1] - pilot_.x_m[range.from]; }
 
   void assign_significant() {
     for (std::size_t i = 0; i < direction_.size(); ++i) {
@@ -152,7 +153,11 @@ class RunFinder {
   void find_rests() {
     for (const PointRange& range : ranges_of(direction_)) {
       if (direction_[range.from] != 0) continue;
-      if (range.size() == direction_.size()) return rest(range);
+      if (range.size() == direction_.size()) {
+        // Nowhere is v significant. Yet a slow motion with gaps covers its distance: settle() gives it its direction.
+        if (std::abs(distance_over(range)) < least_distance()) rest(range);
+        break;
+      }
       if (is_rest(range)) grow_rest(range);
     }
     for (std::size_t i = 0; i < direction_.size(); ++i) {
@@ -194,7 +199,7 @@ class RunFinder {
   void settle(const PointRange& range, int before, int after) {
     if (before == after && before != 0) return fill_range(direction_, range, before);
     if (before == 0 && after == 0) {
-      const double distance = pilot_.x_m[range.to - 1] - pilot_.x_m[range.from];
+      const double distance = distance_over(range);
       if (std::abs(distance) < least_distance()) return rest(range);
       return fill_range(direction_, range, distance > 0.0 ? 1 : -1);
     }
@@ -216,7 +221,7 @@ class RunFinder {
     const PointRange& inner = before != 0 ? second : first;
     fill_range(direction_, outer, known);
     if (inner.size() == 0) return;
-    if (std::abs(pilot_.x_m[inner.to - 1] - pilot_.x_m[inner.from]) >= least_distance()) {
+    if (std::abs(distance_over(inner)) >= least_distance()) {
       return fill_range(direction_, inner, -known);
     }
     if (span_s(inner) < kRestBandwidths * pilot_.bandwidth_s) return fill_range(direction_, inner, known);

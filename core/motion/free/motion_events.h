@@ -64,6 +64,9 @@ struct MotionRuns {
 /// standard deviations of a position. Over a shorter distance, noise leaves the acceleration uncertain by a fifth or
 /// more.
 ///
+/// Where v is significant nowhere, as in a slow motion with long gaps, the clip rests if its ends are less than that
+/// distance apart.
+///
 /// Between two runs lies a rest if x has almost no slope and curvature for three pilot bandwidths; it is extended while
 /// x stays within three standard deviations of its median, so that the adjacent points are truly moving. Otherwise it
 /// is a reversal (or a slow passage), split where the smoothed x is extreme.

@@ -208,3 +208,35 @@ TEST_CASE("check says how long each stage took where it is asked to") {
   INFO(result.err);
   CHECK(result.err.find("calibration: took ") != std::string::npos);
 }
+
+TEST_CASE("check takes several files, as analyze does, and one folder") {
+  const tests::TempDir temp;
+  for (const char* name : {"fast/run.txt", "slow/run.txt", "third.txt"}) {
+    std::string text = "t (s),x (m)\n";
+    for (int i = 0; i < 60; ++i) {
+      const double t = i / 60.0, noise = 1e-4 * ((7919 * i) % 13 - 6);
+      text += fmt::format("{:.5f},{:.5f}\n", t, 0.4 * t + 0.25 * t * t + noise);
+    }
+    fs::create_directories((temp / name).parent_path());
+    base::write_file(temp / name, text);
+  }
+  const tests::ProcessResult checked =
+      tests::glidelab({"check", "fast/run.txt", "slow/run.txt", "third.txt", "--incline", "4", "--masses",
+                       "0.1,0.2,0.3", "--json", "-o", "out"},
+                      temp.path());
+  INFO(checked.err);
+  REQUIRE(checked.status == 0);
+  const json check = json::parse(checked.out);
+  CHECK(check.at("name") == "run and 2 more");
+  REQUIRE(check.at("clips").size() == 3);
+  CHECK(check.at("clips")[0].at("name") == "run");
+  CHECK(check.at("clips")[1].at("name") == "run (2)");
+  CHECK(check.at("clips")[2].at("seen") == 60);
+
+  fs::create_directories(temp / "folder");
+  base::write_file(temp / "folder/experiment.toml", "format = 1\nname = \"empty\"\n");
+  const tests::ProcessResult mixed = tests::glidelab({"check", "third.txt", "folder", "-q", "-o", "out2"}, temp.path());
+  CHECK(mixed.status == 1);
+  CHECK(mixed.err.find("folder: found a folder among several recordings, expected files with a track") !=
+        std::string::npos);
+}

@@ -130,6 +130,58 @@ TEST_CASE("tables of SLEAP, of TrackMate and of scripts are read in frames and p
   CHECK_THROWS_WITH(times.read(units()), Contains("--frame-rate") && Contains("times (\"T\")"));
 }
 
+namespace {
+
+/// Qualisys: what was recorded above the numbers, one in a line, no times, millimetres. Two markers, cart and rail.
+std::string qualisys(const std::string& header) {
+  std::string text =
+      "NO_OF_FRAMES\t30\nNO_OF_CAMERAS\t2\nNO_OF_MARKERS\t2\nFREQUENCY\t50\nNO_OF_ANALOG\t0\nDESCRIPTION\t--\n"
+      "TIME_STAMP\t2023-09-23, 10:09:02.604\t117623.99684550\nDATA_INCLUDED\t3D\nMARKER_NAMES\tcart\trail\n"
+      "TRAJECTORY_TYPES\tMeasured\tMeasured\n" +
+      header;
+  for (int i = 0; i < kRows; ++i)
+    text += fmt::format("{:.3f}\t59.1\t397.7\t1.5\t60.2\t398.1\n", 1e3 * place_m(i) - 206);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a table of Qualisys has its frame rate above its header, millimetres, and a marker before each axis") {
+  const std::string headed = "cart X\tcart Y\tcart Z\trail X\trail Y\trail Z\t\n";
+  for (const std::string& header : {headed, std::string()}) {
+    CAPTURE(header);
+    const Made made(qualisys(header));
+    const std::vector<core::TrackRun> runs = core::runs_in(made.file);
+    REQUIRE(runs.size() == 2);
+    CHECK(runs[0].label == "cart");
+    CHECK(runs[1].label == "rail");
+    const core::TrackData track = made.read({}, "cart: x");
+    REQUIRE(track.x_m.size() == kRows);
+    for (int i = 0; i < kRows; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      CHECK(track.t_s[at] == Approx(i / kRate_hz));
+      CHECK(track.x_m[at] == Approx(place_m(i) - 0.206).margin(1e-6));
+    }
+    const auto* const taken = tests::note_of<core::ImageUnitsTaken>(track.notes);
+    REQUIRE(taken);
+    CHECK(taken->frame_rate_hz == kRate_hz);
+    CHECK(made.read(units(100.0, {}), "cart: x").t_s[1] == Approx(0.01));  // what a person states counts
+  }
+  // With times of its own, whose header has words for the markers as well.
+  std::string timed = "FREQUENCY\t7\nBODIES\t2\nTime\tcart X\tcart Y\n";
+  for (int i = 0; i < kRows; ++i) timed += fmt::format("{}\t{:.6f}\t0.1\n", i / kRate_hz, place_m(i));
+  const core::TrackData track = Made(timed).read({});
+  CHECK(track.t_s[1] == Approx(1.0 / kRate_hz));
+  CHECK(track.x_m[9] == Approx(place_m(9)).margin(1e-6));
+}
+
+TEST_CASE("columns that are named by numbers are no statements above a header") {
+  std::string text = "time,10,20\n";
+  for (int i = 0; i < kRows; ++i) text += fmt::format("{},{:.6f},3\n", i / kRate_hz, place_m(i));
+  const core::TrackData track = Made(text).read({}, "2");
+  CHECK(track.t_s[1] == Approx(1.0 / kRate_hz));
+}
+
 TEST_CASE("units of images that a file does not need are refused where they were stated for it") {
   std::string metres = "t (s),x (m)\n", own = "t_s,x_m\n";
   for (int i = 0; i < kRows; ++i) {

@@ -143,10 +143,24 @@ TEST_CASE("of two columns without a header, positions that seldom go back are no
   CHECK(track.x_m[9] == Approx(x(9)));
 }
 
-TEST_CASE("times without a header of which one is repeated are times all the same, and its line is named") {
-  std::string text;
-  for (int i = 0; i < 40; ++i) text += fmt::format("{:.2f},{:.4f}\n", 0.01 * (i == 7 ? 6 : i), 0.1 + 0.011 * i);
-  CHECK_THROWS_WITH(read_text(text), Contains("line 7") && Contains("0.06"));
+TEST_CASE("times of which one is wrong are times all the same: its line is named, or left out if it repeats the last") {
+  const auto text = [](int wrong, int by) {
+    std::string rows;
+    for (int i = 0; i < 40; ++i)
+      rows += fmt::format("{:.2f},{:.4f}\n", 0.01 * (i - (i % wrong == 7 ? by : 0)), 0.1 * i);
+    return rows;
+  };
+  CHECK_THROWS_WITH(read_text(text(40, 2)), Contains("line 7") && Contains("0.05"));
+  const core::TrackData track = read_text(text(40, 1));
+  REQUIRE(track.x_m.size() == 39);
+  CHECK(track.x_m[6] == Approx(0.6));
+  CHECK(track.x_m[7] == Approx(0.8));
+  CHECK(track.t_s[7] == Approx(0.08));
+  const auto* const note = tests::note_of<core::TimesRepeated>(track.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->rows == 1);
+  CHECK(note->first_s == Approx(0.06));
+  CHECK_THROWS_WITH(read_text(text(10, 1)), Contains("line 7") && Contains("0.06"));  // one in ten: rounded times
 }
 
 TEST_CASE("of two columns without a header that both increase the first is the time, and a note says so") {

@@ -197,6 +197,34 @@ TEST_CASE("the rows of a film that a converter brought to a higher rate get the 
   CHECK(note->camera_hz == Approx(50.0).epsilon(1e-9));
 }
 
+TEST_CASE("a table whose logger is faster than its sensor has the sensor's values, at the rows that brought them") {
+  // A new value every 7 rows, or every 5 to 9; a recorded force keeps its places.
+  for (const bool even : {true, false}) {
+    CAPTURE(even);
+    std::vector<double> t_s, x_m, force_n;
+    int since = 0;
+    for (int row = 0, next = 0, many = 0; row < 200; ++row) {
+      if (row == next) {
+        since = row;
+        next += even ? 7 : 5 + 3 * many % 5;
+        ++many;
+      }
+      const double seen_s = 0.01 * since;
+      t_s.push_back(0.01 * row);
+      x_m.push_back(0.9 * seen_s - 0.15 * seen_s * seen_s);
+      force_n.push_back(since);
+    }
+    const core::TrackData track = core::track_of_numbers(t_s, x_m, force_n, "clip");
+    const auto* const note = tests::note_of<core::ValuesHeld>(track.notes);
+    REQUIRE(note != nullptr);
+    CHECK(note->rows == 200);
+    CHECK(note->held == 200 - track.t_s.size());
+    CHECK(track.t_s.size() <= 30);
+    for (std::size_t i = 0; i < track.t_s.size(); ++i)
+      CHECK(track.t_s[i] == Approx(0.01 * track.force_n[i]).margin(1e-9));
+  }
+}
+
 TEST_CASE("rows that repeat the one before in place of lost frames are left out, and the others keep their times") {
   std::vector<double> t_s, x_m;
   for (int row = 0; row < 90; ++row) {

@@ -169,6 +169,7 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
       {found::SlowFrames{10.0}, "are 10 s apart", "milliseconds"},
       {found::FallsSlowly{{core::estimate(0.7, 0.01, 20.0), 9.8}}, "begins with 0.700 ± 0.010 m/s² at v = 0",
        "which of these it is"},
+      {found::SlowSensor{{105, 121, 7}}, "105 of 121 rows repeat the position of the row above", "rate of the sensor"},
       {found::Gaps{0.4, 0.33}, "40 % of its time lies in gaps of up to 0.33 s", "even rate"},
       {found::Interrupted{101.161, 101.36, 1}, "from 101.161 s to 101.36 s it does not move as before and after",
        "let it run freely"},

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/result/results.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -58,6 +59,16 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
     CHECK(seen[kind]);
   }
   CHECK(report::why_words({}).empty());
+}
+
+TEST_CASE("a missing line is explained by what leaves the positions out, and gaps by the estimator that bridges them") {
+  const std::string gaps =
+      report::why_words(WhyUnknown{unknown::NoLine{35, {{LeftOut::kernel_gap, 20}, {LeftOut::hand, 9}}}});
+  CHECK(gaps.find("left out are 20 of 35 positions (kernel over a gap), 9 (hand). ") != std::string::npos);
+  CHECK(gaps.find("--estimator trajectory") != std::string::npos);
+  const std::string rest = report::why_words(WhyUnknown{unknown::NoLine{35, {{LeftOut::rest, 30}}}});
+  CHECK(rest.find("left out are 30 of 35 positions (at rest)") != std::string::npos);
+  CHECK(rest.find("--estimator") == std::string::npos);
 }
 
 TEST_CASE("a reason names the clips whose motion went against the launch, and when the launch begins") {
