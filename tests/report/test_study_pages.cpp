@@ -65,7 +65,7 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   CHECK(has(mu, "19.8 ± 5.4"));
   const std::string page = report::requirement_report(one_camera("mu", 0.0005, 1.8e-5)).html;
   CHECK(has(page, ">3 of 200</td>"));
-  CHECK(has(page, ">27</td>"));       // 1.5 of the bound: at most
+  CHECK(has(page, ">27</td>"));       // 1.5 of the bound: the upper limit
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
   CHECK(has(k, "rms error of K/m (10⁻³ 1/s)\n"));
@@ -117,7 +117,7 @@ TEST_CASE("points of require that lie close together share one label") {
 TEST_CASE("a label of require that would stand on the next point takes its number in") {
   validate::Requirement requirement = one_camera("mu", 0.0005, 1.8e-5);
   const validate::Candidate first = requirement.candidates.front();
-  // The axis is ln 100 + ln(1.2 x 1.6) = 5.26 long. Points join within 0.07 of it, 0.37, of the first: the second does,
+  // The axis is 1.17 ln 100 = 5.39 long. Points join within 0.07 of it, 0.38, of the first: the second does,
   // the third does not, but it lies 0.3 beside the end of their label.
   requirement.candidates.clear();
   for (const double cost : {10.0, 10.0 * std::exp(0.3), 10.0 * std::exp(0.6), 1000.0}) {
