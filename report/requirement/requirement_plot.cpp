@@ -204,8 +204,7 @@ Plot requirement_plot(const Requirement& requirement) {
   };
   add(front, fmt::format("1:2 with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
   add(met, fmt::format("1:2:4:5 with yerrorbars pt 7 ps 0.8 lc rgb '{}' title 'reaches all'", kColors[2]));
-  add(open,
-      fmt::format("1:2:4:5 with yerrorbars pt 4 ps 0.8 lc rgb '{}' title 'open'", kColors[0]));
+  add(open, fmt::format("1:2:4:5 with yerrorbars pt 4 ps 0.8 lc rgb '{}' title 'open'", kColors[0]));
   add(missed, fmt::format("1:2:4:5 with yerrorbars pt 6 ps 0.8 lc rgb '{}' title 'misses'", kColors[1]));
   return {Drawing{script, data, {620, 420}},
           "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "

@@ -375,7 +375,7 @@ std::string requirement_text(const Requirement& requirement) {
   if (!below.empty())
     text += "\nWhat limits the others (how many times smaller the bound, “by runs” the error, is without it)\n" + below;
   const std::string next = next_step(requirement);
-  if (!next.empty()) text += "\n" + next + "\n";
+  if (!next.empty()) text += "\n" + without_code_marks(next) + "\n";
   return text;
 }
 
