@@ -66,7 +66,9 @@ std::string bias_words(const Certificate& certificate) {
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
   const auto& [value, sd] = quantity.bias_sds;
-  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, sd) : fmt::format("{:.2f}", value);
+  constexpr double kDigit = 0.01;  // of a standard deviation: finer ones tell nobody anything
+  return std::isfinite(sd) && sd > 0.0 ? fmt::format("{:.2f} ± {:.2f}", value, std::max(sd, kDigit))
+                                       : fmt::format("{:.2f}", value);
 }
 
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {

@@ -387,7 +387,7 @@ std::string symbols_html(std::string_view text) {
 namespace {
 
 /// A plot that is so wide that its text would be too small on a narrow screen scrolls there.
-constexpr int kFitsAnywhere = 500;  // points
+constexpr int kFitsAnywhere = 520;  // points
 
 std::string image_of(const DrawnPlot& plot, const Plot& of) {
   if (plot.left_out.empty()) {

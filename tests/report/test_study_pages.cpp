@@ -151,6 +151,11 @@ TEST_CASE("a plan says sizes with their units, and what to do about effects that
   // The page begins with the answer; on a phone an effect's size stands below its name and not beyond the edge.
   const std::string page = report::plan_page("plan", plan).html;
   CHECK(has(page, "</h1>\n<h2 id=\"meaning\">What this means</h2>\n<p><b>These motions can show 4 of the 5 effects"));
+  CHECK(has(page, "distinguish 2 of those from every other (lens distortion and wrong scale): 2 clips"));
+  const std::size_t lens = page.find("lens_distortion"), none = page.find("<b>none</b>");
+  CHECK(lens < none);
+  CHECK(none < page.find("scale_error"));
+  CHECK(page.find("<b>none</b>", page.find("load_independent_friction")) == std::string::npos);  // it is not seen
   CHECK(has(page, "<table class=\"names stack\">"));
   CHECK(page.find(">smallest size that shows</th>") < page.find(">what it is</th>"));
   plan.effects.erase(plan.effects.begin(), plan.effects.begin() + 2);

@@ -109,7 +109,7 @@ TEST_CASE("a bias that one twin alone shows has no standard deviation") {
   CHECK(text.find("0.10 ± 0.10") != std::string::npos);
   CHECK(text.find("inf") == std::string::npos);
   made.quantities[0].bias_sds = {10.8692, 0.0123};
-  CHECK(report::certificate_text(made).find("10.869 ± 0.012") != std::string::npos);
+  CHECK(report::certificate_text(made).find("10.87 ± 0.01") != std::string::npos);
 }
 
 TEST_CASE("only changes that stand out are given as advice, three at most, and none is said in words") {
