@@ -135,9 +135,9 @@ std::string explanation_words(const Certificate& certificate) {
       failing > 0.995
           ? "every explanation of the data that the diagnosis finds likely"
           : fmt::format("explanations of the data to which the diagnosis gives a probability of {} % in all",
-                        percent(failing));
+                        whole_percent(failing));
   return fmt::format("They fail under {}, above all under {} ({} % hold).", which, explanation_name(*worst),
-                     percent(worst->coverage.share));
+                     whole_percent(worst->coverage.share));
 }
 
 /// "The twins leave out …, unlike the recording."; empty if nothing is missing.
@@ -428,7 +428,7 @@ std::string configurations_table(const Certificate& certificate) {
 std::string explanations_table(const Certificate& certificate) {
   HtmlTable table({"explanation", "probability", "twins", "intervals that hold"});
   for (const validate::CertifiedExplanation& one : certificate.explanations) {
-    table.row({escape(explanation_name(one)), percent(one.probability) + " %", fmt::format("{}", one.twins),
+    table.row({escape(explanation_name(one)), whole_percent(one.probability) + " %", fmt::format("{}", one.twins),
                share_text(one.coverage)});
   }
   return table.str() +

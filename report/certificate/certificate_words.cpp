@@ -55,12 +55,12 @@ std::string micrometres(double length_m) {
 
 }  // namespace
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
 }
 
 std::string percent_text(double share, double low, double high) {
-  return fmt::format("{} % ({} to {} %)", percent(share), percent(low), percent(high));
+  return fmt::format("{} % ({} to {} %)", whole_percent(share), whole_percent(low), whole_percent(high));
 }
 
 std::string fall_text(const validate::RunFall& fall) {

@@ -9,7 +9,7 @@
 namespace glidelab::report {
 
 /// "94".
-std::string percent(double share);
+std::string whole_percent(double share);
 
 /// "94 % (90 to 97 %)".
 std::string percent_text(double share, double low, double high);
