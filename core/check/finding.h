@@ -248,8 +248,7 @@ struct Interlaced {
 
 struct OtherRateInFile {
   double file_hz = 0.0, stated_hz = 0.0;
-  bool by_rate = true;    ///< the stated rate gives the times; otherwise the file's time stamps do
-  bool playback = false;  ///< the file is made to be played slowly, as high-speed clips are: the stated rate is another
+  bool by_rate = true;  ///< the stated rate gives the times; otherwise the file's time stamps do
 };
 
 struct UnevenStamps {

@@ -83,20 +83,13 @@ void judge_codec(const ClipCheck& clip, FindingBook& book) {
     book.add(Severity::change, found::StrongCompression{clip.block_steps});
 }
 
-/// Whether a clip that was filmed at that rate is played slowly: at half the rate, frames may have been dropped
-/// instead.
-bool is_playback(double file_hz, double stated_hz) {
-  constexpr double kFastestPlayed_hz = 61.0, kLeastSlower = 2.9;
-  return file_hz < kFastestPlayed_hz && stated_hz > kLeastSlower * file_hz;
-}
-
 void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBook& book) {
   const auto frames = static_cast<double>(std::max<std::size_t>(clip.frames, 1));
   const bool by_rate = experiment.camera->time == TimeSource::rate;
   if (clip.container_rate_hz && std::abs(*clip.container_rate_hz / clip.frame_rate_hz - 1.0) > kRateRounding) {
     const bool playback = is_playback(*clip.container_rate_hz, clip.frame_rate_hz);
     book.add(by_rate && !playback ? Severity::change : Severity::note,
-             found::OtherRateInFile{*clip.container_rate_hz, clip.frame_rate_hz, by_rate, playback}, Topic::time);
+             found::OtherRateInFile{*clip.container_rate_hz, clip.frame_rate_hz, by_rate}, Topic::time);
   }
   if (clip.drift_frames > kMostDriftFrames) {
     book.add(by_rate ? Severity::unusable : Severity::note,
@@ -250,6 +243,11 @@ void note_assumptions(const std::vector<ClipSetup>& setups, std::vector<Finding>
 }
 
 }  // namespace
+
+bool is_playback(double file_hz, double stated_hz) {
+  constexpr double kFastestPlayed_hz = 61.0, kLeastSlower = 2.9;
+  return file_hz < kFastestPlayed_hz && stated_hz > kLeastSlower * file_hz;
+}
 
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings = statement_findings(experiment, check);

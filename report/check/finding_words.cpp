@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/check/recording_findings.h"
 #include "core/result/results.h"
 #include "core/result/uphill.h"
 #include "report/analysis/note_words.h"
@@ -230,7 +231,7 @@ struct FindingSentence {
                     2.0 * of.frame_rate_hz)};
   }
   FindingWords operator()(const found::OtherRateInFile& of) const {
-    if (of.playback) {
+    if (core::is_playback(of.file_hz, of.stated_hz)) {
       return {fmt::format("the file is played at {:.6g} frames per second; the rate in experiment.toml, {:.6g}, counts",
                           of.file_hz, of.stated_hz),
               ""};
