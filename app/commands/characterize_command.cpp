@@ -1,4 +1,5 @@
 /// glidelab characterize FOLDER: flat fields and dark frames in; camera.toml, characterize.json and report.html out.
+/// Without a gain in them the question stays unanswered (exit status 4).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,6 +8,7 @@
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
+#include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/characterize/camera_measurement.h"
 #include "core/characterize/flat_field_folder.h"
@@ -44,10 +46,10 @@ void characterize(const CharacterizeOptions& options) {
   display.clear();
 
   print_answer(options.common.json ? json : report::camera_text(camera));
-  say(options.common, fmt::format("camera file: {}", (out / "camera.toml").string()));
+  say(options.common,
+      fmt::format("camera file: {}; report: {}", (out / "camera.toml").string(), (out / "report.html").string()));
   if (!camera.gain_dn_per_e.value) {
-    say(options.common,
-        "The camera file is incomplete: these images do not determine the gain, so nothing is known in electrons.");
+    throw base::NotMet("the camera file is incomplete: without the gain nothing is known in electrons");
   }
 }
 

@@ -45,7 +45,7 @@ void add_explore(CLI::App& app, Command& chosen) {
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/explore-page");
-  for (const char* const hidden : {"--jobs", "--verbose"}) command->get_option(hidden)->group("");
+  hide_options(*command, {"--jobs", "--verbose"});
   command->callback([options, &chosen] { chosen = [options] { explore(*options); }; });
 }
 

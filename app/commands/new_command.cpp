@@ -71,7 +71,7 @@ void add_new(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("new", "Make a commented experiment folder, to be filled with a recording");
   command->add_option("FOLDER", options->folder, "The folder to make; must not exist, or be empty");
   add_common_options(*command, options->common, "FOLDER");
-  for (const char* const hidden : {"--out", "--jobs", "--verbose"}) command->get_option(hidden)->group("");
+  hide_options(*command, {"--out", "--jobs", "--verbose"});
   command->callback([options, &chosen] { chosen = [options] { make_new(*options); }; });
 }
 

@@ -114,7 +114,7 @@ void add_pattern(CLI::App& app, Command& chosen) {
       ->delimiter(',')
       ->default_str("8,12,16,24");
   add_common_options(*command, options->common, "glidelab-out/pattern-<paper>");
-  for (const char* const hidden : {"--jobs", "--verbose"}) command->get_option(hidden)->group("");
+  hide_options(*command, {"--jobs", "--verbose"});
   command->callback([options, &chosen] { chosen = [options] { pattern(*options); }; });
 }
 

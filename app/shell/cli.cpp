@@ -76,9 +76,11 @@ bool in_colour() {
          (terminal == nullptr || std::string_view(terminal) != "dumb");
 }
 
-/// One line of standard error for each line of the message.
+/// One line of standard error for each line of the message. An answer that is no is not an error.
 int fail(int status, std::string_view message) {
-  const char* const head = in_colour() ? "\033[1;31mglidelab: error:\033[0m" : "glidelab: error:";
+  const char* const head = status == kNotMet ? "glidelab:"
+                           : in_colour()     ? "\033[1;31mglidelab: error:\033[0m"
+                                             : "glidelab: error:";
   while (!message.empty() && message.back() == '\n') message.remove_suffix(1);
   do {
     const std::size_t newline = message.find('\n');

@@ -71,6 +71,14 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
   command.add_flag("-v,--verbose", options.verbose, "Print how long each stage took")->excludes(quiet);
 }
 
+void hide_options(CLI::App& command, std::initializer_list<const char*> names) {
+  for (const char* const name : names) {
+    CLI::Option* const hidden = command.get_option(name);
+    hidden->group("");
+    for (CLI::Option* const other : command.get_options()) other->remove_excludes(hidden);
+  }
+}
+
 fs::path named_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
   const fs::path wanted = options.out.empty() ? fs::path("glidelab-out") / fmt::format("{}-{}", command, name_of(input))
                                               : fs::path(options.out);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -50,6 +51,9 @@ struct CommonOptions {
 /// Without `seed_help` the command draws no random numbers: --seed is accepted and not listed.
 void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
                         const std::string& seed_help = {});
+
+/// Leaves these options out of the help of a command to which they mean nothing, also where another excludes them.
+void hide_options(CLI::App& command, std::initializer_list<const char*> names);
 
 /// --out, or glidelab-out/<command>-<name of input>; absolute, links resolved, no trailing slash.
 std::filesystem::path named_folder(const CommonOptions& options, std::string_view command,

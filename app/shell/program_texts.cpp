@@ -283,7 +283,7 @@ std::string man_page(const CLI::App& app) {
       ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\nthe command line is wrong\n"
       ".TP\n.B 3\nthe environment failed: disk full, codec missing\n"
       ".TP\n.B 4\na requirement is not met (a baseline, a target, a usable recording, a twin that a "
-      "scenario cannot express, intervals that do not hold)\n.TP\n.B 130\ninterrupted\n";
+      "scenario cannot express, intervals that do not hold, flat fields that give no gain)\n.TP\n.B 130\ninterrupted\n";
   return text;
 }
 

@@ -87,7 +87,8 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBoo
   const auto frames = static_cast<double>(std::max<std::size_t>(clip.frames, 1));
   const bool by_rate = experiment.camera->time == TimeSource::rate;
   if (clip.container_rate_hz && std::abs(*clip.container_rate_hz / clip.frame_rate_hz - 1.0) > kRateRounding) {
-    book.add(by_rate ? Severity::change : Severity::note,
+    const bool playback = is_playback(*clip.container_rate_hz, clip.frame_rate_hz);
+    book.add(by_rate && !playback ? Severity::change : Severity::note,
              found::OtherRateInFile{*clip.container_rate_hz, clip.frame_rate_hz, by_rate}, Topic::time);
   }
   if (clip.drift_frames > kMostDriftFrames) {
@@ -224,7 +225,8 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     if (held != nullptr) book.add(Severity::change, found::SlowSensor{*held});
     const bool reported =
         held != nullptr || std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
-        std::holds_alternative<InterlacedFilm>(note) || (clip.images && std::holds_alternative<RepeatsLeftOut>(note)) ||
+        std::holds_alternative<InterlacedFilm>(note) || std::holds_alternative<ContainerOfOtherRate>(note) ||
+        (clip.images && std::holds_alternative<RepeatsLeftOut>(note)) ||
         (inclined && std::holds_alternative<HeightTaken>(note)) ||                  // asks whether it falls
         (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice
     if (!reported) book.add(Severity::note, note);
@@ -243,6 +245,11 @@ void note_assumptions(const std::vector<ClipSetup>& setups, std::vector<Finding>
 }
 
 }  // namespace
+
+bool is_playback(double file_hz, double stated_hz) {
+  constexpr double kFastestPlayed_hz = 61.0, kLeastSlower = 2.9;
+  return file_hz < kFastestPlayed_hz && stated_hz > kLeastSlower * file_hz;
+}
 
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings = statement_findings(experiment, check);

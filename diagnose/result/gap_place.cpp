@@ -59,7 +59,7 @@ std::string_view to_text(GapKind kind) {
     case GapKind::displacement:
       return "displacement";
     case GapKind::lateness:
-      return "lateness";
+      return "delay";
     case GapKind::scale:
       return "scale";
     case GapKind::intercept:

@@ -238,8 +238,10 @@ std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison&
     ranked.converged = hypothesis.converged;
     ranking.push_back(std::move(ranked));
   }
-  // Explanations come by falling probability. Those whose probability is next to 0 come by evidence, which does not
-  // underflow.
+  // Hypotheses do not come in order: what single frames and images show has changed their probabilities. Those next to
+  // 0 go by evidence, which does not underflow.
+  std::stable_sort(ranking.begin(), ranking.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
   const auto rest =
       std::find_if(ranking.begin(), ranking.end(), [](const auto& ranked) { return ranked.probability < kNoChance; });
   std::stable_sort(rest, ranking.end(),

@@ -33,7 +33,7 @@ class BlindTarget:
     at_least, at_most : float or None
         What is wanted.
     met : bool or None
-        None without a case.
+        None if too few cases decide, or none bears on it.
     """
 
     what: str
@@ -179,8 +179,7 @@ class Blind(Result):
                                   for verdict in verdicts] for kind in kinds]
 
     def _repr_html_(self) -> str:
-        rows = [[one.what, _found_text(one), _wanted_text(one), "" if one.met is None else "met" if one.met else "missed"]
-                for one in self.targets]
+        rows = [[one.what, _found_text(one), _wanted_text(one), _verdict_text(one)] for one in self.targets]
         kinds, verdicts, counts = self._counted()
         return (html_table(["", "found", "wanted", ""], rows, f"{len(self.cases)} blind cases, seed {self.seed}")
                 + html_table(["put in", *(f"verdict {verdict}" for verdict in verdicts)],
@@ -207,6 +206,12 @@ def _found_text(target: BlindTarget) -> str:
     if target.value is None:
         return ""
     return f"{target.value:.3g}" if not target.of else f"{100.0 * target.value:.0f} % ({target.yes} of {target.of})"
+
+
+def _verdict_text(target: BlindTarget) -> str:
+    if target.met is None:
+        return "" if target.value is None else "open"
+    return "met" if target.met else "missed"
 
 
 def _wanted_text(target: BlindTarget) -> str:

@@ -9,6 +9,7 @@
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
 #include "report/blind/blind_run.h"
+#include "report/blind/everyday_targets.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
@@ -22,49 +23,6 @@ using validate::EverydayScore;
 using validate::SharesByCase;
 
 using TextRows = std::vector<std::vector<std::string>>;
-
-/// "86 % (43 of 50; 95 %: 73 to 94 %)"; a dash if there are none.
-std::string share_and_interval(const BlindShare& share) {
-  if (share.of == 0) return "–";
-  const validate::ProportionInterval interval = share.interval95();
-  return fmt::format("{:.0f} % ({} of {}; 95 %: {:.0f} to {:.0f} %)", 100.0 * share.share(), share.yes, share.of,
-                     100.0 * interval.low, 100.0 * interval.high);
-}
-
-/// Of one class and one quantity; of all where they are empty.
-BlindShare covered_of(const EverydayScore& score, const std::string& of_class, const std::string& quantity) {
-  BlindShare sum;
-  for (const auto& [kind, by_quantity] : score.covered) {
-    if (!of_class.empty() && kind != of_class) continue;
-    for (const auto& [key, share] : by_quantity) {
-      if (!quantity.empty() && key != quantity) continue;
-      sum.of += share.of;
-      sum.yes += share.yes;
-    }
-  }
-  return sum;
-}
-
-std::string found_text(const EverydayTarget& target) {
-  if (!bears(target)) return "–";
-  return target.value ? base::number_text(*target.value, 2) : share_and_interval(target.share);
-}
-
-std::string limits_text(const EverydayTarget& target) {
-  const auto text = [&](double limit) {
-    return target.number ? base::number_text(limit, 2) : fmt::format("{:.0f} %", 100.0 * limit);
-  };
-  if (target.low > 0.0 && target.high < 1.0) return text(target.low) + " to " + text(target.high);
-  return target.low > 0.0 ? "at least " + text(target.low) : "at most " + text(target.high);
-}
-
-std::string words_of_class(const std::string& kind) {
-  if (kind == "one") return "one cause";
-  if (kind == "two") return "two causes";
-  if (kind == "dirt") return "small imperfections alone";
-  if (kind == "outside") return "off the list";
-  return "all";
-}
 
 std::string calibration_text(const validate::EverydayCalibration& of) {
   return fmt::format("{} (by chance {}; stated {}, right {}, of {})", base::number_text(of.error, 2),
@@ -91,7 +49,7 @@ TextRows detail_rows(const EverydayScore& score) {
   for (const auto& method : score.methods)
     add_rows("half of the excess claimed", method.false_claim, method_name(method.by), rows);
   for (const auto& method : score.methods)
-    add_rows("a wrong name above 0.8", method.wrong_name, method_name(method.by), rows);
+    add_rows("a wrong name with a probability above 0.8", method.wrong_name, method_name(method.by), rows);
   const std::string first = method_name(score.methods.front().by);
   add_rows("main cause helps most, claimed or not", score.main_helps, first, rows);
   add_rows("the verdict is unknown", score.unknown, first, rows);
@@ -202,7 +160,7 @@ std::vector<std::string> answers_row(const std::string& key, const std::string& 
       core::symbol_of(key),
       kind,
       fmt::format("{} of {}", of.answered.yes, of.answered.of),
-      of.error.of == 0 ? "–" : base::number_text(of.error.rms(), 2) + (unit.empty() || unit == "°" ? "" : " ") + unit,
+      of.error.of == 0 ? "–" : base::digits_text(of.error.rms(), 2) + (unit.empty() || unit == "°" ? "" : " ") + unit,
       text_of(of.covered),
       text_of(of_diagnosis)};
 }
@@ -333,40 +291,6 @@ std::string everyday_cases_table(const BlindRun& run) {
 
 }  // namespace
 
-std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
-  const validate::EverydayMethod& diagnosis = score.methods.front();
-  std::vector<EverydayTarget> targets = {
-      {"the main cause is named first", sum_of(diagnosis.main_first), {}, 0.85, 1.0},
-      {"two causes: both are named", sum_of(diagnosis.both), {}, 0.70, 1.0},
-      {"small imperfections alone: a cause with half of the excess is claimed",
-       sum_of(diagnosis.false_claim),
-       {},
-       0.0,
-       0.05},
-      {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
-      {"recovered intervals contain the true value", covered_of(score, "", ""), {}, 0.90, 0.98}};
-  EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1, true};
-  if (diagnosis.share_error.of > 0) shares.value = diagnosis.share_error.rms();
-  targets.push_back(std::move(shares));
-  for (const char* kind : {"one", "two", "dirt", "outside"}) {
-    EverydayTarget calibration{
-        "expected calibration error, " + words_of_class(kind), {}, {}, 0.0, kWantedCalibration, true};
-    const auto found = score.calibration.find(kind);
-    if (found != score.calibration.end()) calibration.value = found->second.error;
-    targets.push_back(std::move(calibration));
-  }
-  return targets;
-}
-
-bool bears(const EverydayTarget& target) {
-  return target.value.has_value() || target.share.of > 0;
-}
-
-bool is_met(const EverydayTarget& target) {
-  const double found = target.value.value_or(target.share.share());
-  return found >= target.low && found <= target.high;
-}
-
 std::string everyday_json(const BlindRun& run) {
   const EverydayScore& score = *run.everyday;
   Json document;
@@ -383,7 +307,11 @@ std::string everyday_json(const BlindRun& run) {
     if (target.value) put(one, "value", *target.value);
     if (target.low > 0.0) one["at_least"] = target.low;
     if (target.high < 1.0) one["at_most"] = target.high;
-    if (bears(target)) one["met"] = is_met(target);
+    if (bears(target)) {
+      const TargetVerdict verdict = verdict_of(target);
+      one["met"] = verdict == TargetVerdict::open ? Json(nullptr) : Json(verdict == TargetVerdict::met);
+      if (verdict == TargetVerdict::open) one["why"]["met"] = "the 95 % interval contains the limit";
+    }
     document["targets"].push_back(std::move(one));
   }
   const auto all = score.calibration.find("all");
@@ -397,23 +325,45 @@ std::string everyday_json(const BlindRun& run) {
 
 namespace {
 
-/// "The main cause is named first in 77 % (…); 6 of 10 targets are met."
+/// "The main cause is named first in 77 % (…). Of 10 targets 6 are met, 1 is missed, 3 are open: too few cases."
 std::string everyday_answer(const EverydayScore& score) {
   const std::vector<EverydayTarget> targets = everyday_targets(score);
-  const auto bearing = std::ranges::count_if(targets, bears);
-  const auto met = std::ranges::count_if(targets, [](const auto& of) { return bears(of) && is_met(of); });
-  const EverydayTarget& first = targets.front();
-  if (!bears(first)) return fmt::format("{} of {} targets are met.", met, bearing);
-  return fmt::format("The main cause is named first in {}; {} of {} targets are met.", found_text(first), met, bearing);
+  const auto count = [&](TargetVerdict verdict) {
+    return std::ranges::count_if(targets, [&](const auto& of) { return bears(of) && verdict_of(of) == verdict; });
+  };
+  const auto are = [](std::ptrdiff_t many) { return fmt::format("{} {}", many, many == 1 ? "is" : "are"); };
+  const std::ptrdiff_t open = count(TargetVerdict::open);
+  std::string text;
+  if (bears(targets.front())) {
+    text = fmt::format("The main cause is named first in {}. ", found_text(targets.front()));
+  }
+  const std::ptrdiff_t bearing = std::ranges::count_if(targets, bears);
+  text += fmt::format("Of {} {} {} met, {} missed", bearing, bearing == 1 ? "target" : "targets",
+                      are(count(TargetVerdict::met)), are(count(TargetVerdict::missed)));
+  if (open > 0) text += fmt::format(", {} open: more cases would decide", are(open));
+  return text + ".";
 }
+
+/// A word for how a target stands; empty if no case bears on it.
+std::string how_it_stands(const EverydayTarget& target) {
+  if (!bears(target)) return {};
+  const TargetVerdict verdict = verdict_of(target);
+  return verdict == TargetVerdict::met ? "met" : verdict == TargetVerdict::missed ? "missed" : "open";
+}
+
+constexpr const char* kTerms =
+    "<p class=\"soft\">A target is met or missed if the 95 % interval decides, and open otherwise (intervals of errors "
+    "assume that these are normal). A cause that is not on the list is one that the diagnosis does not know: its right "
+    "verdict is “unknown”. The expected calibration error is the mean difference between a stated probability and how "
+    "often such a statement is right, over ten bins.</p>\n";
 
 }  // namespace
 
 std::string everyday_text(const BlindRun& run) {
   const EverydayScore& score = *run.everyday;
-  TextRows rows = {{fmt::format("of {} everyday cases", run.outcomes.size()), "found", "wanted"}};
+  TextRows rows = {{fmt::format("of {} everyday cases", run.outcomes.size()), "found", "wanted", ""}};
   for (const EverydayTarget& target : everyday_targets(score)) {
-    rows.push_back({target.what, found_text(target), limits_text(target)});
+    rows.push_back({target.what, found_text(target), limits_text(target), how_it_stands(target)});
   }
   std::string text = everyday_answer(score) + "\n\n" + text_table(rows, 1);
   if (!run.outside) return text;
@@ -431,7 +381,10 @@ Page everyday_page(const BlindRun& run) {
   const char* const question = "How often is the diagnosis right about experiments as students record them?";
   Html body = question_heading(fmt::format("blind cases: {} everyday tracks, seed {}", run.outcomes.size(), run.seed),
                                question);
-  body += meaning_section(fmt::format("<p><b>{}</b></p>\n", escape(everyday_answer(score))));
+  const std::string failed = run.outside ? outside_failed(*run.outside) : std::string();
+  body += meaning_section(fmt::format("{}<p><b>{}</b></p>\n",
+                                      failed.empty() ? failed : "<p><b>" + escape(failed) + "</b></p>\n",
+                                      escape(everyday_answer(score))));
   body +=
       "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis, each with "
       "three to five small imperfections besides its causes. Each was diagnosed by a separate process that saw only "
@@ -439,10 +392,11 @@ Page everyday_page(const BlindRun& run) {
   HtmlTable targets({"what", "found (95 % interval)", "wanted"});
   targets.stack_when_narrow(1);
   for (const EverydayTarget& target : everyday_targets(score)) {
-    const char* how = !bears(target) ? "" : is_met(target) ? ": met" : ": missed";
-    targets.row({escape(target.what), escape(found_text(target)), escape(limits_text(target)) + how});
+    const std::string how = how_it_stands(target);
+    targets.row({escape(target.what), escape(found_text(target)),
+                 escape(limits_text(target)) + (how.empty() ? how : ": " + how)});
   }
-  body += "<h2>Results against the targets</h2>\n" + targets.str();
+  body += "<h2>Results against the targets</h2>\n" + targets.str() + kTerms;
   if (run.outside) {
     HtmlTable answers(kAnswersHeader, 6);
     answers.stack_when_narrow(1);

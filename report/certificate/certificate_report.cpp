@@ -26,31 +26,8 @@ constexpr double kSure = 2.5;  // standard deviations of a mean, for the largest
 constexpr std::size_t kMostChanges = 3;
 constexpr double kWorthDoing = 0.1;  // by which a change must reduce the errors to be advised
 
-std::string percent(double share) {
-  return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
-}
-
-/// "94 % (90 to 97 %)".
-std::string percent_text(double share, double low, double high) {
-  return fmt::format("{} % ({} to {} %)", percent(share), percent(low), percent(high));
-}
-
 std::string share_text(const validate::RunShare& share) {
   return share.of == 0 ? "–" : percent_text(share.share, share.low, share.high);
-}
-
-/// "94 % (90 to 97 %)" less; where the error more than doubles, the factor by which it grows: "240 times larger (20 to
-/// 2900)".
-std::string fall_text(const validate::RunFall& fall) {
-  if (fall.value < -1.0) {
-    return fmt::format("{} times larger ({} to {})", base::number_text(1.0 - fall.value, 2),
-                       base::number_text(1.0 - fall.high, 2), base::number_text(1.0 - fall.low, 2));
-  }
-  constexpr double kNearEnd = 0.99, kMostTold = 0.999;  // no error disappears: none is 100 % smaller
-  if (fall.high <= kNearEnd) return percent_text(fall.value, fall.low, fall.high);
-  if (fall.low > kMostTold) return "over 99.9 %";
-  const auto told = [&](double share) { return 100.0 * std::min(share, kMostTold); };
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", told(fall.value), told(fall.low), told(fall.high));
 }
 
 bool is_headline(const CertifiedQuantity& quantity) {
@@ -89,12 +66,13 @@ std::string bias_words(const Certificate& certificate) {
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
   const auto& [value, sd] = quantity.bias_sds;
-  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, sd) : fmt::format("{:.2f}", value);
+  constexpr double kDigit = 0.01;  // of a standard deviation: finer ones tell nobody anything
+  return std::isfinite(sd) && sd > 0.0 ? fmt::format("{:.2f} ± {:.2f}", value, std::max(sd, kDigit))
+                                       : fmt::format("{:.2f}", value);
 }
 
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
   const std::string failed = fmt::format("{} of {}", quantity.failed, quantity.asked);
-  if (quantity.answered() == 0) return {heading_of(quantity.quantity), "–", "–", "–", "–", failed};
   return {heading_of(quantity.quantity), share_text(quantity.coverage),     bias_text(quantity),
           base::sd_text(quantity.rms),   base::sd_text(quantity.stated_sd), failed};
 }
@@ -102,10 +80,11 @@ std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
 const std::vector<std::string> kHeader = {"quantity",  "intervals that hold", "bias (stated sd)",
                                           "rms error", "stated sd",           "without a value"};
 
-/// The table cells of a change, one for each counted quantity.
+/// The table cells of a change, one for each quantity that has values.
 std::vector<std::string> change_cells(const Certificate& certificate, const ChangedTwin& change) {
   std::vector<std::string> cells;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() == 0) continue;
     const auto at =
         std::find_if(change.quantities.begin(), change.quantities.end(),
                      [&](const validate::QuantityFall& fall) { return fall.quantity == quantity.quantity; });
@@ -135,35 +114,11 @@ std::string limits_words(const Certificate& certificate) {
   return names.empty() ? kNothingStandsOut : fmt::format("What limits it, the largest first: {}.", names);
 }
 
-std::string micrometres(double length_m) {
-  return base::number_text(length_m * 1e6, 3) + " µm";
-}
-
-/// How the twins were made.
-std::string twin_words(const Certificate& certificate) {
-  std::string text = fmt::format(
-      "{} twins of this recording ({} clip{}), {}, were analysed with the {}. They repeat the fitted motions",
-      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
-                         : "simulated at its frame times with its noise and rounding",
-      estimator_name(certificate.estimator));
-  std::string causes;
-  for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
-  text += causes.empty() ? ", with no cause besides the nominal law." : fmt::format(", with {} as diagnosed.", causes);
-  if (certificate.explanations.size() > 1)
-    text += " Each likely explanation is used for a share of the twins equal to its probability.";
-  if (!certificate.filmed)
-    text += " What an explanation leaves unexplained in each clip is in the twins as well, drawn afresh for each.";
-  text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
-                      micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
-  return text;
-}
-
-/// "quadratic drag and friction by configuration".
+/// "quadratic drag, added inertia and friction by configuration".
 std::string explanation_name(const validate::CertifiedExplanation& one) {
-  std::string text;
-  for (const std::string& id : one.ids) text += (text.empty() ? "" : " and ") + effect_name(id);
-  return text.empty() ? "the nominal law alone" : text;
+  std::vector<std::string> names;
+  for (const std::string& id : one.ids) names.push_back(effect_name(id));
+  return names.empty() ? "the nominal law alone" : list_of(names);
 }
 
 /// The explanations under which the intervals fail, if they hold under others; empty if there is no difference.
@@ -180,9 +135,9 @@ std::string explanation_words(const Certificate& certificate) {
       failing > 0.995
           ? "every explanation of the data that the diagnosis finds likely"
           : fmt::format("explanations of the data to which the diagnosis gives a probability of {} % in all",
-                        percent(failing));
+                        whole_percent(failing));
   return fmt::format("They fail under {}, above all under {} ({} % hold).", which, explanation_name(*worst),
-                     percent(worst->coverage.share));
+                     whole_percent(worst->coverage.share));
 }
 
 /// "The twins leave out …, unlike the recording."; empty if nothing is missing.
@@ -216,8 +171,8 @@ std::string narrow_words(const Certificate& certificate) {
 std::string with_causes(const Certificate& certificate) {
   for (const ChangedTwin& change : certificate.changes) {
     if (change.limit != validate::TwinLimit::cause || change.causes.empty()) continue;
-    return fmt::format(" `glidelab analyze --with {}` includes this cause in the law.",
-                       fmt::join(change.causes, " --with "));
+    return fmt::format(" `glidelab analyze --with {}` includes {} in the law.", fmt::join(change.causes, " --with "),
+                       change.causes.size() > 1 ? "these causes" : "this cause");
   }
   return {};
 }
@@ -248,13 +203,29 @@ std::string certificate_answer(const Certificate& certificate) {
                      headline_names(certificate), share, bias, with_causes(certificate));
 }
 
+namespace {
+
+/// ", but those of the terminal velocity 150 times larger (110 to 190)": what the change makes worse beyond chance.
+std::string worse_words(const Certificate& certificate, const ChangedTwin& change) {
+  std::vector<std::string> worse;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    const auto at = std::ranges::find(change.quantities, quantity.quantity, &validate::QuantityFall::quantity);
+    if (at == change.quantities.end() || !makes_worse(*at)) continue;
+    worse.push_back(fmt::format("those of {} {}", named(quantity), rise_text(at->fall)));
+  }
+  return worse.empty() ? std::string() : ", but " + list_of(worse);
+}
+
+}  // namespace
+
 std::vector<std::string> best_changes(const Certificate& certificate) {
   std::vector<std::string> words;
   for (const ChangedTwin& change : certificate.changes) {
     if (!helps(change) || words.size() == kMostChanges) continue;
     const LimitWords limit = limit_words(change);
-    words.push_back(fmt::format("{}. With {}, the errors of {} are {} smaller.", limit.advice, limit.change,
-                                headline_names(certificate), fall_text(*change.together)));
+    words.push_back(fmt::format("{}. With {}, the errors of {} are {} smaller{}.", limit.advice, limit.change,
+                                headline_names(certificate), fall_text(*change.together),
+                                worse_words(certificate, change)));
   }
   return words;
 }
@@ -279,7 +250,7 @@ Plot certificate_plot(const Certificate& certificate) {
           "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\n"
           "plot $q using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'",
           lowest, row + 0.7, tics, color(0));
-  return {Drawing{script, {never_empty(data)}, {560, 250}},
+  return {Drawing{script, {never_empty(data)}, {480, 240}},
           "Intervals that hold in the twins, each share with its own 95 % interval; the line: 95 %, as stated",
           "Share of the stated intervals that hold, by quantity"};
 }
@@ -370,17 +341,20 @@ std::string certificate_json(const Certificate& certificate) {
 }
 
 std::string certificate_text(const Certificate& certificate) {
-  std::string text = certificate_answer(certificate) + "\n";
+  std::string text = without_code_marks(certificate_answer(certificate)) + "\n";
   if (const std::string which = explanation_words(certificate); !which.empty())
     text += base::printable_text(which) + "\n";
   if (const std::string lacks = all_lacks(certificate); !lacks.empty()) text += base::printable_text(lacks) + "\n";
   text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
-  for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
-  text += text_table(rows, 1);
   std::vector<std::vector<std::string>> changes = {{"how much smaller the error becomes with"}};
-  for (const CertifiedQuantity& quantity : certificate.quantities)
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() == 0) continue;
+    rows.push_back(cells_of(quantity));
     changes.front().push_back(symbol_of(quantity.quantity));
+  }
+  text += text_table(rows, 1);
+  if (const std::string none = unanswered_sentence(certificate); !none.empty()) text += "\n" + none + "\n";
   for (const ChangedTwin& change : certificate.changes) {
     changes.push_back({change_name(change)});
     for (std::string& cell : change_cells(certificate, change)) changes.back().push_back(std::move(cell));
@@ -412,8 +386,9 @@ std::string changes_html(const Certificate& certificate) {
 
 std::string limits_table(const Certificate& certificate) {
   std::vector<std::string> header = {"change", "together"};
-  for (const CertifiedQuantity& quantity : certificate.quantities)
-    header.push_back(escape(symbol_of(quantity.quantity)));
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() > 0) header.push_back(escape(symbol_of(quantity.quantity)));
+  }
   HtmlTable table(header);
   table.stack_when_narrow(1);
   for (const ChangedTwin& change : certificate.changes) {
@@ -441,18 +416,19 @@ std::string configurations_table(const Certificate& certificate) {
   table.stack_when_narrow(2);
   const std::vector<std::string> setups = setup_names(certificate);
   for (const CertifiedQuantity& quantity : certificate.configurations) {
+    if (quantity.answered() == 0) continue;
     std::vector<std::string> cells = cells_of(quantity);
     cells.front() = escape(cells.front());
     cells.insert(cells.begin(), escape(setups.at(*quantity.setup)));
     table.row(cells);
   }
-  return table.str();
+  return table.empty() ? std::string() : table.str();
 }
 
 std::string explanations_table(const Certificate& certificate) {
   HtmlTable table({"explanation", "probability", "twins", "intervals that hold"});
   for (const validate::CertifiedExplanation& one : certificate.explanations) {
-    table.row({escape(explanation_name(one)), percent(one.probability) + " %", fmt::format("{}", one.twins),
+    table.row({escape(explanation_name(one)), whole_percent(one.probability) + " %", fmt::format("{}", one.twins),
                share_text(one.coverage)});
   }
   return table.str() +
@@ -483,11 +459,14 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
   HtmlTable table(kHeader);
   table.stack_when_narrow(1);
   for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() == 0) continue;
     std::vector<std::string> cells = cells_of(quantity);
     cells.front() = escape(cells.front());
     table.row(cells);
   }
   if (!table.empty()) body += table.str();
+  if (const std::string none = unanswered_sentence(certificate); !none.empty())
+    body += fmt::format("<p class=\"soft\">{}</p>\n", escape(none));
   if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   body += changes_html(certificate);
   if (!certificate.changes.empty()) body += folded("What limits it", limits_table(certificate));

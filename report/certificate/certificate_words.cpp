@@ -4,18 +4,24 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/math/angles.h"
+#include "base/text/number_text.h"
 #include "report/text/display_text.h"
 #include "report/text/why_words.h"
 
 namespace glidelab::report {
 namespace {
 
-std::string cause_advice(const std::vector<std::string>& causes) {
-  const std::string advice = "Remove the cause from the experiment";
-  if (causes.empty()) return advice;
-  return advice + fmt::format(", or put it into the model (glidelab analyze --with {})", fmt::join(causes, " --with "));
+std::string cause_advice(const validate::ChangedTwin& changed) {
+  const bool several = changed.causes.size() > 1, worse = std::ranges::any_of(changed.quantities, makes_worse);
+  const std::string them = several ? "these causes" : "the cause";
+  if (changed.causes.empty()) return "Remove the cause from the experiment";
+  const std::string command = fmt::format("(glidelab analyze --with {})", fmt::join(changed.causes, " --with "));
+  if (worse) return fmt::format("Put {} into the model {}", them, command);
+  return fmt::format("Remove {} from the experiment, or put {} into the model {}", them, several ? "them" : "it",
+                     command);
 }
 
 /// Words for everything that twins may lack; a feature without them does not compile.
@@ -43,7 +49,39 @@ struct LackWords {
   }
 };
 
+std::string micrometres(double length_m) {
+  return base::number_text(length_m * 1e6, 3) + " µm";
+}
+
 }  // namespace
+
+std::string whole_percent(double share) {
+  return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
+}
+
+std::string percent_text(double share, double low, double high) {
+  return fmt::format("{} % ({} to {} %)", whole_percent(share), whole_percent(low), whole_percent(high));
+}
+
+std::string fall_text(const validate::RunFall& fall) {
+  if (fall.value < -1.0) return rise_text(fall);
+  constexpr double kNearEnd = 0.99, kMostTold = 0.999;  // no error disappears: none is 100 % smaller
+  if (fall.high <= kNearEnd) return percent_text(fall.value, fall.low, fall.high);
+  if (fall.low > kMostTold) return "over 99.9 %";
+  const auto told = [&](double share) { return 100.0 * std::min(share, kMostTold); };
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", told(fall.value), told(fall.low), told(fall.high));
+}
+
+std::string rise_text(const validate::RunFall& fall) {
+  if (fall.value >= -1.0) return percent_text(-fall.value, -fall.high, -fall.low) + " larger";
+  return fmt::format("{} times larger ({} to {})", base::number_text(1.0 - fall.value, 2),
+                     base::number_text(1.0 - fall.high, 2), base::number_text(1.0 - fall.low, 2));
+}
+
+bool makes_worse(const validate::QuantityFall& one) {
+  constexpr double kWorthTelling = 0.1;
+  return one.fall.high < 0.0 && one.fall.value < -kWorthTelling;
+}
 
 LimitWords limit_words(const validate::ChangedTwin& changed) {
   using validate::TwinLimit;
@@ -69,7 +107,8 @@ LimitWords limit_words(const validate::ChangedTwin& changed) {
     case TwinLimit::rounding:
       return {"rounding", "positions with all their digits", "Export more digits"};
     case TwinLimit::cause:
-      return {"a cause that the law lacks", "viscous and Coulomb friction alone", cause_advice(changed.causes)};
+      return {changed.causes.size() > 1 ? "causes that the law lacks" : "a cause that the law lacks",
+              "viscous and Coulomb friction alone", cause_advice(changed)};
     case TwinLimit::clip_scatter:
       return {"what differs from clip to clip", "one law for every clip",
               "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};
@@ -85,6 +124,35 @@ std::string lack_words(const validate::NotInTwins& lack) {
 
 std::string unanswered_words(const validate::CertifiedQuantity& quantity) {
   return quantity.why ? why_words(quantity.why) : "none of its clips could be used";
+}
+
+std::string unanswered_sentence(const validate::Certificate& certificate) {
+  std::vector<std::string> names;
+  for (const validate::CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() > 0) continue;
+    names.push_back(fmt::format("{} ({})", symbol_of(quantity.quantity), unanswered_words(quantity)));
+  }
+  return names.empty() ? std::string() : fmt::format("No twin gives {}.", list_of(names, " or "));
+}
+
+std::string twin_words(const validate::Certificate& certificate) {
+  std::string text = fmt::format(
+      "{} twins of this recording ({} clip{}), {}, were analysed with the {}. They repeat the fitted motions",
+      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
+      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
+                         : "simulated at its frame times with its noise and rounding",
+      estimator_name(certificate.estimator));
+  std::vector<std::string> names;
+  for (const std::string& cause : certificate.causes) names.push_back(effect_name(cause));
+  const std::string causes = list_of(names);
+  text += causes.empty() ? ", with no cause besides the nominal law." : fmt::format(", with {} as diagnosed.", causes);
+  if (certificate.explanations.size() > 1)
+    text += " Each likely explanation is used for a share of the twins equal to its probability.";
+  if (!certificate.filmed)
+    text += " What an explanation leaves unexplained in each clip is in the twins as well, drawn afresh for each.";
+  text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
+                      micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
+  return text;
 }
 
 std::vector<std::string> setup_names(const validate::Certificate& certificate) {

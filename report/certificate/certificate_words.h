@@ -8,6 +8,21 @@
 
 namespace glidelab::report {
 
+/// "94".
+std::string whole_percent(double share);
+
+/// "94 % (90 to 97 %)".
+std::string percent_text(double share, double low, double high);
+
+/// How much smaller an error became: "94 % (90 to 97 %)"; where it more than doubled, rise_text().
+std::string fall_text(const validate::RunFall& fall);
+
+/// How much larger: "15 % (10 to 20 %) larger", "240 times larger (20 to 2900)".
+std::string rise_text(const validate::RunFall& fall);
+
+/// Whether the change makes the errors of this quantity larger, by more than chance and by a tenth or more.
+bool makes_worse(const validate::QuantityFall& one);
+
 /// One limitation of a recording. Text.
 struct LimitWords {
   std::string limit;   ///< "noise", "calibration", "few clips"
@@ -21,6 +36,12 @@ std::string lack_words(const validate::NotInTwins& lack);
 
 /// Why no twin has an estimate of the quantity. Text.
 std::string unanswered_words(const validate::CertifiedQuantity& quantity);
+
+/// "No twin gives µ (no line for v > 0) or α (…)."; empty if each counted quantity has values. Text.
+std::string unanswered_sentence(const validate::Certificate& certificate);
+
+/// How the twins were made. Text.
+std::string twin_words(const validate::Certificate& certificate);
 
 /// "0.335 kg, 4°", for each of the setups; with the name in the twin's scenario if another one reads the same.
 std::vector<std::string> setup_names(const validate::Certificate& certificate);

@@ -133,8 +133,11 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
                                       std::max(duel.wins, duel.losses), duel.wins + duel.losses, duel.p));
     }
     if (apart == 0 && answering > 1) {
-      sentences.push_back(fmt::format("{}: {} cases tell none of the {} entrants{} apart.", symbol_of(of.quantity),
-                                      score.challenge.cases, answering, silent.empty() ? "" : " that answer"));
+      const char* const which = silent.empty() ? "" : " that answer";
+      sentences.push_back(fmt::format("{}: {} cases do not tell {} apart.", symbol_of(of.quantity),
+                                      score.challenge.cases,
+                                      answering == 2 ? fmt::format("the two entrants{}", which)
+                                                     : fmt::format("any two of the {} entrants{}", answering, which)));
     }
   }
   return sentences;

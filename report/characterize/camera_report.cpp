@@ -93,17 +93,60 @@ std::string camera_json(const core::CameraMeasurement& camera) {
   return json_text(document);
 }
 
-std::string camera_text(const core::CameraMeasurement& camera) {
-  std::vector<std::vector<std::string>> rows = {{"", "value", "sd", "unit"}};
-  std::string below;
+namespace {
+
+constexpr const char* kTerms =
+    "DN: digital number, the code of a pixel. PRNU (photo-response non-uniformity): how much the pixels differ in "
+    "their response to light. DSNU (dark-signal non-uniformity): how much they differ in the dark.";
+
+struct Remark {
+  std::string names;  ///< "read noise, full well"
+  std::string words;
+};
+
+/// How the numbers were found and why others were not: what is said of several is said once. The gain's own reason is
+/// the answer (no_gain_words).
+std::vector<Remark> remarks_of(const core::CameraMeasurement& camera) {
+  std::vector<Remark> remarks;
   for (const CameraRow& row : camera_rows(camera)) {
-    rows.push_back({row.name, row.value, row.sd, row.unit});
-    if (!row.measured->value) below += fmt::format("{}: {}\n", row.name, why_words(*row.measured));
-    if (row.measured->how) below += fmt::format("{}: {}\n", row.name, how_words(*row.measured));
+    const bool is_gain = row.key == "gain_dn_per_e" && !row.measured->value;
+    const std::string words = row.measured->value ? how_words(*row.measured) : why_words(*row.measured);
+    if (words.empty() || is_gain) continue;
+    const auto same = std::ranges::find(remarks, words, &Remark::words);
+    if (same == remarks.end()) {
+      remarks.push_back({row.name, words});
+    } else {
+      same->names += ", " + row.name;
+    }
   }
-  std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
-                                 camera.folder.bit_depth, camera.width_px, camera.height_px, camera.frames);
-  text += text_table(rows, 1);
+  return remarks;
+}
+
+/// Whether one of them has a value or a limit: a table of dashes says nothing.
+bool any_known(const std::vector<CameraRow>& rows) {
+  return std::ranges::any_of(rows, [](const CameraRow& row) { return row.measured->value || row.measured->limit; });
+}
+
+/// "These images do not give the gain: … raw images are needed."; empty where they do.
+std::string no_gain_words(const core::CameraMeasurement& camera) {
+  if (camera.gain_dn_per_e.value) return {};
+  return fmt::format("These images do not give the gain: {}.", why_words(camera.gain_dn_per_e));
+}
+
+}  // namespace
+
+std::string camera_text(const core::CameraMeasurement& camera) {
+  const std::vector<CameraRow> numbers = camera_rows(camera);
+  std::vector<std::vector<std::string>> rows = {{"", "value", "sd", "unit"}};
+  for (const CameraRow& row : numbers) rows.push_back({row.name, row.value, row.sd, row.unit});
+  std::string below;
+  for (const Remark& remark : remarks_of(camera)) below += fmt::format("{}: {}\n", remark.names, remark.words);
+  std::string text = no_gain_words(camera);
+  if (!text.empty()) text += "\n\n";
+  text += fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name, camera.folder.bit_depth,
+                      camera.width_px, camera.height_px, camera.frames);
+  if (any_known(numbers)) text += text_table(rows, 1);
+  text += fmt::format("\n{}\n", kTerms);
   text += fmt::format("\nOutlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
   if (!below.empty()) text += "\n" + below;
@@ -213,21 +256,24 @@ double brightest_dn(const core::CameraMeasurement& camera) {
 }
 
 Plot transfer_plot(const core::CameraMeasurement& camera) {
+  const bool line = camera.gain_dn_per_e.value.has_value();
   std::string script(kFrame);
   script += fmt::format(
       "set xlabel 'mean above dark (DN)'\nset ylabel 'variance (DN²)'\nset xrange [0:*]\nset yrange [0:*]\nset xtics "
-      "{4:.6g}\nset arrow from {0:.6g}, graph "
-      "0 to {0:.6g}, graph 1 nohead dt 2 lc rgb '{1}'\nplot $line using 1:2 with lines lw 2 lc rgb '{2}' title 'line', "
-      "$used using 1:2:3 with yerrorbars pt 7 ps 0.7 lc rgb '{3}' title 'in the fit', $others using 1:2 with points pt "
-      "6 ps 0.8 lc rgb '{1}' title 'others'\n",
-      0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(brightest_dn(camera), 6));
-  const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
-                                      points_of(camera, "others", false)};
-  return {
-      Drawing{script, data},
-      "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, against the mean. The slope "
-      "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
-      "Variance against mean of every level, with the fitted line"};
+      "{2:.6g}\nset arrow from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dt 2 lc rgb '{1}'\nplot ",
+      0.7 * camera.saturation_dn, kGrey, tick_step(brightest_dn(camera), 6));
+  if (line) script += fmt::format("$line using 1:2 with lines lw 2 lc rgb '{}' title 'line', ", color(1));
+  script += fmt::format(
+      "$used using 1:2:3 with yerrorbars pt 7 ps 0.7 lc rgb '{}' title '{}', $others using 1:2 with points pt 6 ps 0.8 "
+      "lc rgb '{}' title 'others'\n",
+      color(0), line ? "in the fit" : "usable levels", kGrey);
+  std::vector<PlotData> data = {points_of(camera, "used", true), points_of(camera, "others", false)};
+  if (line) data.insert(data.begin(), line_of(camera));
+  return {Drawing{script, data},
+          fmt::format("Photon transfer: variance of the pixels from frame to frame, rounding subtracted, against the "
+                      "mean. {} Bars: 2 sd; dashed: 70 % of saturation",
+                      line ? "The slope is the gain." : "No line gives a gain here."),
+          line ? "Variance against mean of every level, with the fitted line" : "Variance against mean of every level"};
 }
 
 /// If the levels were made by exposures: the mean as a function of exposure.
@@ -250,19 +296,28 @@ std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
 
 std::string numbers_table(const core::CameraMeasurement& camera) {
   HtmlTable table({"", "value", "sd", "unit"});
-  std::string remarks;
-  for (const CameraRow& row : camera_rows(camera)) {
+  const std::vector<CameraRow> rows = camera_rows(camera);
+  for (const CameraRow& row : rows) {
     table.row({escape(row.name), escape(row.value), escape(row.sd), escape(row.unit)});
-    const std::string remark = row.measured->value ? how_words(*row.measured) : why_words(*row.measured);
-    if (!remark.empty()) remarks += fmt::format("<li>{}: {}</li>", escape(row.name), escape(remark));
   }
-  return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
+  std::string items;
+  for (const Remark& remark : remarks_of(camera)) {
+    items += fmt::format("<li>{}: {}</li>", escape(remark.names), escape(remark.words));
+  }
+  return fmt::format("{}<p class=\"soft\">{}</p>\n{}", any_known(rows) ? table.str() : "", escape(kTerms),
+                     items.empty() ? "" : "<ul>" + items + "</ul>\n");
 }
 
 /// How finely a pixel resolves light, from the known numbers.
 std::string camera_meaning(const core::CameraMeasurement& camera) {
+  if (const std::string no_gain = no_gain_words(camera); !no_gain.empty()) {
+    return meaning_section(fmt::format(
+        "<p><b>{}</b> Without it nothing is known in electrons. <code>camera.toml</code> next to this page is "
+        "incomplete: a scenario refuses it until you put in values of your own.</p>\n",
+        escape(no_gain)));
+  }
   std::string text;
-  if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {
+  if (camera.read_noise_e.value) {
     text = fmt::format("In the dark a pixel fluctuates by {} electrons ({} codes)",
                        base::number_text(*camera.read_noise_e.value, 3),
                        base::number_text(*camera.read_noise_e.value * *camera.gain_dn_per_e.value, 3));
@@ -284,12 +339,11 @@ std::string camera_meaning(const core::CameraMeasurement& camera) {
 }  // namespace
 
 Page camera_report(const core::CameraMeasurement& camera) {
-  Html body = question_heading(camera.folder.name, "How much noise does this camera have?") +
+  Html body = question_heading(camera.folder.name, "How much noise does this camera have?") + camera_meaning(camera) +
               fmt::format(
                   "<p class=\"soft\">Measured from {} frames of {} × {} pixels, {} bits, by photon "
                   "transfer (EMVA 1288).</p>\n",
                   camera.frames, camera.width_px, camera.height_px, camera.folder.bit_depth);
-  body += camera_meaning(camera);
   body += "<h2>Numbers</h2>\n" + numbers_table(camera);
   body += camera.outlying_pixels == 0
               ? std::string("<p>No pixel is hot or dead.</p>\n")

@@ -13,7 +13,7 @@ namespace unmeasured = core::unmeasured;
 struct Reason {
   double limit = 0.0;
 
-  std::string operator()(const unmeasured::NoGain&) const { return "it requires the gain, which is not known"; }
+  std::string operator()(const unmeasured::NoGain&) const { return "the gain is needed, and it is not known"; }
   std::string operator()(const unmeasured::DarkLevelCut& of) const {
     return fmt::format(
         "{:.3g} % of the dark samples are at code 0: the dark level is clipped; raise the camera's black "

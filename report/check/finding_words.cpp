@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/check/recording_findings.h"
 #include "core/result/results.h"
 #include "core/result/uphill.h"
 #include "report/analysis/note_words.h"
@@ -119,8 +120,10 @@ struct FindingSentence {
     return {fmt::format("the marker is {} seen in frame {} of {}", of.at_start ? "first" : "last", of.frame, of.frames),
             of.at_edge
                 ? ""
-                : "the marker is not at the edge of the image there: if the glider is fast, shorten the exposure and "
-                  "use more light; otherwise cut the clip where the hand lets go"};
+                : fmt::format("the marker is not at the edge of the image there: if the glider is fast, shorten the "
+                              "exposure and use more light; otherwise {}",
+                              of.at_start ? "begin the clip where the hand lets go (start_s)"
+                                          : "end the clip where the glider stops or is caught (end_s)")};
   }
   FindingWords operator()(const found::SmallMarker& of) const {
     return {fmt::format("the marker is {:.2g} px wide", of.width_px), "move closer or use a bigger one"};
@@ -229,9 +232,14 @@ struct FindingSentence {
                     2.0 * of.frame_rate_hz)};
   }
   FindingWords operator()(const found::OtherRateInFile& of) const {
+    if (core::is_playback(of.file_hz, of.stated_hz)) {
+      return {fmt::format("the file is played at {:.6g} frames per second; the rate in experiment.toml, {:.6g}, counts",
+                          of.file_hz, of.stated_hz),
+              ""};
+    }
     return {fmt::format("the file states {:.6g} frames per second, experiment.toml {:.6g}", of.file_hz, of.stated_hz),
-            fmt::format("check that the clip was filmed at {:.6g} frames per second: a wrong rate scales every speed{}",
-                        of.stated_hz, of.by_rate ? "; a slow-motion file states its playback rate" : "")};
+            fmt::format("check that the clip was filmed at {:.6g} frames per second: a wrong rate scales every speed",
+                        of.stated_hz)};
   }
   FindingWords operator()(const found::UnevenStamps& of) const {
     return {fmt::format("the file's time stamps depart from even spacing by {:.3g} frames; {} steps are irregular",

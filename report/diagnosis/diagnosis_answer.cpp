@@ -12,6 +12,7 @@
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/html/gnuplot.h"
+#include "report/html/html.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -85,8 +86,9 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
     script += fmt::format("set object rectangle from {},{} to {},{} fc rgb '{}' fs solid 0.85 noborder\n",
                           std::min(bar.from, bar.to), middle - kThick, std::max(bar.from, bar.to), middle + kThick,
                           rows[i].hue);
-    script += fmt::format("set label {} at 0.8, {} left front noenhanced{}\n", gnuplot_quoted(rows[i].name),
-                          row + kNameAbove, rows[i].name.size() > kLongLine ? " font ',12'" : "");
+    script +=
+        fmt::format("set label {} at 0.8, {} left front noenhanced{}\n", gnuplot_quoted(typeset_numbers(rows[i].name)),
+                    row + kNameAbove, rows[i].name.size() > kLongLine ? " font ',12'" : "");
     if (i + 1 < rows.size()) {
       script += fmt::format("set arrow from {0},{1} to {0},{2} nohead back lw 1 dt 3 lc rgb '#888888'\n", bar.to,
                             middle - kThick, middle - 1.0 + kThick);
@@ -103,14 +105,17 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
   }
   script += "\n";
   std::vector<PlotData> data = {bars};
-  if (!errors.rows.empty()) data.push_back(errors);
   const char* const held_out = diagnosis.lines ? "lines" : "clips";
+  std::string whiskers;
+  if (!errors.rows.empty()) {
+    data.push_back(errors);
+    whiskers = fmt::format("; whiskers are 95 % intervals over {}", held_out);
+  }
   return {{Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
            fmt::format(
                "How much of the gap of held-out {0} each cause explains, one added after the other, and what is left. "
-               "The excess is the squared gap minus 1, its value for noise alone; whiskers are "
-               "95 % intervals over {0}",
-               held_out),
+               "The excess is the squared gap minus 1, its value for noise alone{1}",
+               held_out, whiskers),
            "Waterfall of the gap: before, each cause, what is left"}};
 }
 
@@ -182,7 +187,7 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
   words += region_table(regions) + paragraph(levels_words(diagnosis));
   if (words.empty()) return {};
   const char* const heading = any_left              ? "Where the rest lies"
-                              : diagnosis.remainder ? "Where the nominal model holds"
+                              : diagnosis.remainder ? "How far off the nominal model is"
                                                     : "Where the gap lies";
   return fmt::format("<h2>{}</h2>\n", heading) + words + figures(likeliest_curve(diagnosis, regions));
 }

@@ -28,16 +28,23 @@ std::string seen_text(const diagnose::PlannedEffect& effect) {
   return fmt::format("{} = {}", name, size);
 }
 
+/// Whether a diagnosis would name it and nothing else.
+bool is_distinct(const diagnose::PlannedEffect& effect) {
+  return effect.seen && effect.alike.empty();
+}
+
 std::string lead(const diagnose::Plan& plan) {
-  std::size_t seen = 0, alone = 0;
+  std::size_t seen = 0;
+  std::vector<std::string> alone;
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     seen += effect.seen ? 1 : 0;
-    alone += effect.seen && effect.alike.empty() ? 1 : 0;
+    if (is_distinct(effect)) alone.push_back(effect_name(effect.id));
   }
   return fmt::format(
-      "These motions can show {} of the {} effects in the table, and distinguish {} of those from every other: "
+      "These motions can show {} of the {} effects in the table, and distinguish {} of those from every other{}: "
       "{} clips, {} positions, with a position noise of {} µm.",
-      seen, plan.effects.size(), alone, plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2));
+      seen, plan.effects.size(), alone.size(), alone.empty() ? "" : " (" + list_of(alone) + ")", plan.clips,
+      plan.points, base::number_text(1e6 * plan.noise_m, 2));
 }
 
 /// The conclusions from the detectable effects; plain text.
@@ -123,7 +130,8 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   table.stack_when_narrow(1);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
-    table.row({effect_html(effect.id), symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike))),
+    table.row({effect_html(effect.id), symbols_html(seen_text(effect)),
+               is_distinct(effect) ? "<b>none</b>" : escape(alike_text(effect_names(effect.alike))),
                symbols_html(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning))});
   }
   body += table.str() + figures(isolability_plots(plan.isolability)) +

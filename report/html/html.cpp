@@ -137,7 +137,7 @@ p, li { max-width: 78ch; overflow-wrap: anywhere; }
 .soft, figcaption { color: var(--soft); font-size: 0.92rem; }
 a { color: var(--accent); }
 code { overflow-wrap: anywhere; }
-/* Where a table is cut there is a shadow: the paper that hides it scrolls with the table, the shadow does not. */
+/* Where a table or a plot is cut there is a shadow: the paper that hides it scrolls along, the shadow does not. */
 .scroll { overflow-x: auto; margin: 0.6rem 0; background:
   linear-gradient(to right, var(--paper) 40%, transparent) left / 2.5rem calc(100% + 2px) no-repeat local,
   linear-gradient(to left, var(--paper) 40%, transparent) right / 2.5rem calc(100% + 2px) no-repeat local,
@@ -167,6 +167,7 @@ td.why { white-space: normal; color: var(--soft); }
 figure { margin: 0; border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--tint); max-width: 620px; }
 figure img, figure video { display: block; width: 100%; height: auto; background: #ffffff; }
 figure video { background: #22282e; }  /* until it is loaded */
+figure .scroll { margin: 0; isolation: isolate; }
 figcaption { padding: 0.4rem 0.7rem 0.5rem; }
 nav ul { columns: 16rem; padding-left: 1.2rem; }
 .note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0;
@@ -181,15 +182,18 @@ details.part[open] { padding-bottom: 0.8rem; }
   figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); } }
 @media (max-width: 600px) {
   th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } .tile b { font-size: 1.05rem; } main { padding: 0.8rem 0.8rem 2rem; }
-  th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */ figure:has(img[src^="data:image/svg"]) { overflow-x: auto; } figure img[src^="data:image/svg"] { min-width: 460px; }
+  th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
+  figure .scroll img { min-width: 460px; mix-blend-mode: darken; }  /* its shadow shows through the plot's paper */
 }
+@media (max-width: 600px) and (prefers-color-scheme: dark) { figure .scroll img { mix-blend-mode: lighten; } }
 @media screen and (max-width: 600px) {  /* a row becomes a block: its name, and each number under the title of its column */
   table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }
-  table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 1.2rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
-  table.stack td { border: 0; padding: 0; text-align: left; } table.stack td:not([data-title]) { grid-column: 1 / -1; font-weight: 600; white-space: normal; }
-  table.stack td.n, table.stack td.s { white-space: normal; } table.stack td.t { grid-column: 1 / -1; min-width: 0; }
+  table.stack tr { display: flex; flex-wrap: wrap; gap: 0.1rem 1.2rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
+  table.stack td { border: 0; padding: 0; text-align: left; flex: 1 0 42%; max-width: 100%; }  /* two in a line where both fit */
+  table.stack td:not([data-title]) { flex-basis: 100%; font-weight: 600; white-space: normal; }
+  table.stack td.n, table.stack td.s { white-space: normal; } table.stack td.t { flex-basis: 100%; min-width: 0; }
   table.stack td[data-title]::before { content: attr(data-title); display: block; color: var(--soft); font-size: 0.82rem; white-space: normal; }
-  table.numbered td:first-child, table.numbered td:nth-child(2) { grid-row: 1; } table.numbered td:nth-child(2) { padding-left: 1.8rem; } }
+  table.numbered td:first-child { flex: 0 0 0.6rem; } table.numbered td:nth-child(2) { flex: 1 1 70%; } }
 @media print {
   :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
           --veil: #f4f4f4; --accent: #000000; --good: #000000; --bad: #000000; }
@@ -382,9 +386,14 @@ std::string symbols_html(std::string_view text) {
 
 namespace {
 
-std::string image_of(const DrawnPlot& plot, const std::string& description) {
+/// A plot that is so wide that its text would be too small on a narrow screen scrolls there.
+constexpr int kFitsAnywhere = 520;  // points
+
+std::string image_of(const DrawnPlot& plot, const Plot& of) {
   if (plot.left_out.empty()) {
-    return fmt::format("<img alt=\"{}\" src=\"{}\">", escape(description), data_uri("image/svg+xml", plot.svg));
+    const std::string image =
+        fmt::format("<img alt=\"{}\" src=\"{}\">", escape(of.description), data_uri("image/svg+xml", plot.svg));
+    return of.drawing.size.width > kFitsAnywhere ? "<div class=\"scroll\">" + image + "</div>" : image;
   }
   return fmt::format(
       "<p class=\"note\">This plot is left out because its numbers leave nothing to draw (gnuplot: {}). They are in "
@@ -402,7 +411,7 @@ Page page(std::string_view title, const Html& body) {
     text += body.texts()[i];
     if (i == drawn.size()) break;
     const std::string stem = "plots/" + drawn[i].name;
-    text += image_of(drawn[i], body.plots()[i].description);
+    text += image_of(drawn[i], body.plots()[i]);
     made.files[stem + ".csv"] = drawn[i].csv;
     if (!drawn[i].left_out.empty()) continue;
     made.files[stem + ".svg"] = drawn[i].svg;

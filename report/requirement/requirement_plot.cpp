@@ -61,28 +61,48 @@ struct Label {
   double right = 0.0, top = 0.0;  ///< extent of the points: beyond it the label covers none
 };
 
-/// A logarithmic axis: its values and some room, labelled at 1, 2 and 5 times powers of ten.
-struct LogAxis {
+/// An axis for values of several powers of ten: their logarithm, or, where one of them is 0 (a camera at hand costs
+/// nothing), log(1 + value/unit) with the least other one as its unit. Labelled at 1, 2 and 5 times powers of ten.
+struct PowerAxis {
   double from = std::numeric_limits<double>::infinity(), to = 0.0;
+  double unit = 0.0;  ///< 0: the logarithm alone
   void include(double value) {
     from = std::min(from, value);
     to = std::max(to, value);
   }
-  double length() const { return std::log(to / from); }
+  double place(double value) const { return std::log(unit > 0.0 ? 1.0 + value / unit : value); }
+  double value_at(double place) const { return unit > 0.0 ? unit * (std::exp(place) - 1.0) : std::exp(place); }
+  /// How much farther up the axis the first value is.
+  double between(double value, double other) const { return place(value) - place(other); }
+  double length() const { return between(to, from); }
   std::string script(const std::string& name) const {
-    std::vector<double> tics = ladder_of(from, to);
+    std::vector<double> tics = ladder_of(unit > 0.0 ? unit : from, to);
+    if (unit > 0.0) tics.insert(tics.begin(), 0.0);
     std::erase_if(tics, [this](double value) { return value < from || value > to; });
-    return fmt::format("set {}range [{:.6g}:{:.6g}]\n", name, from, to) + labelled_tics(name, tics);
+    const std::string scale =
+        unit > 0.0
+            ? fmt::format("set nonlinear {0} via log(1.0+{0}/{1:.6g}) inverse {1:.6g}*(exp({0})-1.0)\n", name, unit)
+            : fmt::format("set logscale {}\n", name);
+    return scale + fmt::format("set {}range [{:.6g}:{:.6g}]\n", name, from, to) + labelled_tics(name, tics);
   }
 };
 
+/// Of the costs, or 1 if all are 0.
+double least_above_zero(const std::vector<std::vector<double>>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& row : points) {
+    if (row[0] > 0.0) least = std::min(least, row[0]);
+  }
+  return std::isfinite(least) ? least : 1.0;
+}
+
 /// `points`: cost, value, number. Points are close if a label would cover them: a fraction of the axes' length.
-std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, double wide, double high) {
-  constexpr double kAcross = 0.07, kUp = 0.06;
+std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, const PowerAxis& x, const PowerAxis& y) {
+  const double across = 0.07 * x.length(), up = 0.06 * y.length();
   std::vector<Label> labels;
   for (const std::vector<double>& row : points) {
     const auto near = std::find_if(labels.begin(), labels.end(), [&](const Label& label) {
-      return std::abs(std::log(row[0] / label.x)) < kAcross * wide && std::abs(std::log(row[1] / label.y)) < kUp * high;
+      return std::abs(x.between(row[0], label.x)) < across && std::abs(y.between(row[1], label.y)) < up;
     });
     Label& label = near == labels.end() ? labels.emplace_back(Label{row[0], row[1]}) : *near;
     label.right = std::max(label.right, row[0]);
@@ -91,8 +111,8 @@ std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, dou
   }
   // A label that would still cover a point of another takes that one's numbers in.
   const auto covers = [&](const Label& label, const std::vector<double>& row) {
-    const double right = std::log(row[0] / label.right), up = std::log(row[1] / label.top);
-    return right > 0.0 && right < kAcross * wide && up > -0.5 * kUp * high && up < kUp * high;
+    const double right = x.between(row[0], label.right), above = y.between(row[1], label.top);
+    return right > 0.0 && right < across && above > -0.5 * up && above < up;
   };
   for (std::size_t i = 0; i < labels.size(); ++i) {
     for (std::size_t k = 0; k < labels.size(); ++k) {
@@ -149,23 +169,29 @@ Plot requirement_plot(const Requirement& requirement) {
     }
   }
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + "set logscale xy\n";
+  std::string script(kFrame);
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\n",
                   gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
                   gnuplot_quoted(target_name(target)));
-  constexpr double kLeft = 1.2, kRight = 1.6, kAbove = 1.3;  // factors, for labels and bars
-  LogAxis x, y;
+  constexpr double kAbove = 1.3;                 // a factor, for bars
+  constexpr double kLeft = 0.05, kRight = 0.12;  // of the axis; at the right there are labels
+  PowerAxis x, y;
   y.include(target.value / kAbove);
   y.include(target.value * kAbove);
   for (const std::vector<double>& row : all) {
-    x.include(row[0] / kLeft);
-    x.include(row[0] * kRight);
+    x.include(row[0]);
     y.include(row[3] / kAbove);
     y.include(row[4] * kAbove);
   }
-  if (!all.empty()) script += x.script("x") + y.script("y");
-  for (const Label& label : labels_of(all, x.length(), y.length())) {
+  if (!all.empty()) {
+    if (x.from <= 0.0) x.unit = least_above_zero(all);
+    const double span = x.to > x.from ? x.length() : 1.0, left = x.place(x.from), right = x.place(x.to);
+    x.from = x.value_at(left - kLeft * span);
+    x.to = x.value_at(right + kRight * span);
+    script += x.script("x") + y.script("y");
+  }
+  for (const Label& label : labels_of(all, x, y)) {
     script += fmt::format("set label {} at {:.9g},{:.9g} front offset 0.8,0.45 font ',11'\n",
                           gnuplot_quoted(ranges_text(label.numbers)), label.right, label.top);
   }
@@ -177,13 +203,12 @@ Plot requirement_plot(const Requirement& requirement) {
     data.push_back(block);
   };
   add(front, fmt::format("1:2 with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
-  add(met, fmt::format("1:2:4:5 with yerrorbars pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
-  add(open,
-      fmt::format("1:2:4:5 with yerrorbars pt 4 ps 0.8 lc rgb '{}' title 'not filmed, or too few runs'", kColors[0]));
-  add(missed, fmt::format("1:2:4:5 with yerrorbars pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
+  add(met, fmt::format("1:2:4:5 with yerrorbars pt 7 ps 0.8 lc rgb '{}' title 'reaches all'", kColors[2]));
+  add(open, fmt::format("1:2:4:5 with yerrorbars pt 4 ps 0.8 lc rgb '{}' title 'open'", kColors[0]));
+  add(missed, fmt::format("1:2:4:5 with yerrorbars pt 6 ps 0.8 lc rgb '{}' title 'misses'", kColors[1]));
   return {Drawing{script, data, {620, 420}},
           "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "
-          "were made; the line joins those that no cheaper one beats",
+          "were made. Open: not filmed, or too few runs. The line joins those that no cheaper one beats",
           "Accuracy reached against cost"};
 }
 

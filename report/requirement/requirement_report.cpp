@@ -117,19 +117,6 @@ std::string limit_cell(const validate::TargetResult& result, double scale) {
   return result.found && std::isfinite(result.high) ? base::digits_text(result.high / scale, 2) : "–";
 }
 
-/// Error from runs, its upper limit, bound and number of runs beyond, for each target.
-std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
-  std::vector<std::string> cells;
-  for (std::size_t t = 0; t < candidate.results.size(); ++t) {
-    const double scale = scale_of(requirement.targets[t]).size;
-    cells.push_back(found_text(candidate.results[t], scale));
-    cells.push_back(limit_cell(candidate.results[t], scale));
-    cells.push_back(bound_text(candidate.results[t].bound, scale));
-    cells.push_back(beyond_text(candidate.results[t]));
-  }
-  return cells;
-}
-
 /// "2.1", the position noise; a dash if the camera cannot see the marker.
 std::string noise_cell(const Candidate& candidate) {
   return std::isfinite(candidate.noise_m) ? base::number_text(candidate.noise_m * 1e6, 3) : "–";
@@ -187,17 +174,13 @@ std::string judge_sentence(const Requirement& requirement) {
   return common.empty() ? common : fmt::format("All were judged with the {}.", common);
 }
 
-/// All of them, the cheapest first.
+/// All of them, the cheapest first: what a choice rests on.
 std::string candidate_table(const Requirement& requirement) {
-  const bool judge_column = judges_differ(requirement);
   std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
-  if (judge_column) header.emplace_back("judged by");
   const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
     header.push_back(escape(target_name(target, scale_of(target).factor)));
-    header.push_back("at most");
-    header.push_back("bound" + escape(same_unit(target)));
-    header.push_back("runs beyond the target");
+    header.push_back("upper limit");
   }
   header.insert(header.end(), {"frames/s", "position noise (µm)"});
   HtmlTable table(header, first_number);
@@ -208,9 +191,38 @@ std::string candidate_table(const Requirement& requirement) {
     std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name),
                                     escape(cost_text(requirement, candidate)),
                                     reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
-    if (judge_column) row.push_back(escape(judging_estimators(candidate)));
-    for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
+    for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+      const double scale = scale_of(requirement.targets[t]).size;
+      row.push_back(found_text(candidate.results[t], scale));
+      row.push_back(limit_cell(candidate.results[t], scale));
+    }
     row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+    table.row(row);
+  }
+  return table.str();
+}
+
+/// What the verdicts rest on: the bound, the runs beyond the target and, where they differ, the estimators that judge.
+std::string evidence_table(const Requirement& requirement) {
+  const bool judge_column = judges_differ(requirement);
+  std::vector<std::string> header = {"no.", "camera"};
+  if (judge_column) header.emplace_back("judged by");
+  const std::size_t first_number = header.size();
+  for (const Target& target : requirement.targets) {
+    const std::string of = " of " + escape(symbol_of(target.quantity));
+    header.push_back("bound" + of + escape(same_unit(target)));
+    header.push_back("runs beyond the target" + of);
+  }
+  HtmlTable table(header, first_number);
+  table.stack_when_narrow(2);
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name)};
+    if (judge_column) row.push_back(escape(judging_estimators(candidate)));
+    for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+      row.push_back(bound_text(candidate.results[t].bound, scale_of(requirement.targets[t]).size));
+      row.push_back(beyond_text(candidate.results[t]));
+    }
     table.row(row);
   }
   return table.str();
@@ -275,10 +287,11 @@ std::string how_judged(const Requirement& requirement) {
   return text +
          fmt::format(
              "<p>95 % of the runs stay within the 95 % error (for fewer than 20 runs: 1.96 times their rms error). A "
-             "target is reached if the error's upper limit (“at most”) is within it, and missed if the lower limit is "
+             "target is reached if the error's upper limit (“upper limit”) is within it, and missed if the lower limit "
+             "is "
              "beyond it. With {} runs or more the limits are two of their errors; with fewer they assume normal "
              "errors, so that few runs decide only what is far from the target. If one of fewer runs is beyond the "
-             "target, “at most” is not below that error, and the target is not reached. “Judged by” names the "
+             "target, the upper limit is not below that error, and the target is not reached. “Judged by” names the "
              "estimator with the smaller error; one without an answer in a run counts as infinitely far off there. ± "
              "is one standard deviation, from {} bootstrap resamples of the runs (for fewer than 20: that of normal "
              "errors; for a bias: that of the errors over the root of their number). “Runs beyond the target” counts, "
@@ -315,7 +328,7 @@ std::vector<std::string> short_names(const Requirement& requirement) {
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  const std::string question = fmt::format("Which of these is good enough: {}?", targets_text(requirement));
+  const std::string question = requirement_question(requirement);
   Html body = question_heading(requirement.name, question);
   body += fmt::format("<p><b>{}</b> {}</p>\n<p>{} {}</p>\n", escape(requirement_answer(requirement)),
                       escape(enough_words(requirement)), escape(counts_text(requirement)),
@@ -324,7 +337,7 @@ Page requirement_report(const Requirement& requirement) {
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape_with_code(next));
   body += figures({requirement_plot(requirement)});
   body += candidate_table(requirement) + unanswered_list(requirement) + limits_list(requirement);
-  body += folded("How this was judged", how_judged(requirement));
+  body += folded("How this was judged", evidence_table(requirement) + how_judged(requirement));
   return page(question, body);
 }
 
@@ -362,7 +375,7 @@ std::string requirement_text(const Requirement& requirement) {
   if (!below.empty())
     text += "\nWhat limits the others (how many times smaller the bound, “by runs” the error, is without it)\n" + below;
   const std::string next = next_step(requirement);
-  if (!next.empty()) text += "\n" + next + "\n";
+  if (!next.empty()) text += "\n" + without_code_marks(next) + "\n";
   return text;
 }
 

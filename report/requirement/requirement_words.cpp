@@ -138,10 +138,10 @@ std::optional<double> expected(const validate::TargetResult& result) {
   return result.found ? result.found : result.bound;
 }
 
-/// ", at most 0.000072": the upper limit, on which the verdict rests; empty if nothing was run or there is none.
-std::string at_most_words(const Target& target, const validate::TargetResult& result) {
+/// " (upper limit 0.000072)", on which the verdict rests; empty if nothing was run or there is none.
+std::string upper_limit_words(const Target& target, const validate::TargetResult& result) {
   if (!result.found || !std::isfinite(result.high)) return {};
-  return ", at most " + base::number_text(result.high, 2) + unit_suffix(unit_of(target.quantity));
+  return fmt::format(" (upper limit {}{})", base::number_text(result.high, 2), unit_suffix(unit_of(target.quantity)));
 }
 
 std::string expected_words(const Requirement& requirement, const Candidate& candidate) {
@@ -149,8 +149,8 @@ std::string expected_words(const Requirement& requirement, const Candidate& cand
   for (std::size_t t = 0; t < requirement.targets.size(); ++t) {
     const std::optional<double> value = expected(candidate.results[t]);
     if (!value || !std::isfinite(*value)) continue;
-    text += (text.empty() ? "" : ", ") + error_words(requirement.targets[t], base::number_text(*value, 2)) +
-            at_most_words(requirement.targets[t], candidate.results[t]);
+    text += (text.empty() ? "" : " and ") + error_words(requirement.targets[t], base::number_text(*value, 2)) +
+            upper_limit_words(requirement.targets[t], candidate.results[t]);
   }
   return text;
 }
@@ -207,13 +207,25 @@ std::string error_words(const Target& target, const std::string& value) {
   }
 }
 
+std::string requirement_question(const Requirement& requirement) {
+  std::string targets;
+  for (const Target& target : requirement.targets) {
+    const char* const measure = target.measure == Target::Measure::sd     ? " (rms)"
+                                : target.measure == Target::Measure::bias ? " (bias)"
+                                                                          : "";
+    targets += fmt::format("{}{} to {}{}{}", targets.empty() ? "" : " and ", symbol_of(target.quantity),
+                           base::number_text(target.value, 4), unit_suffix(unit_of(target.quantity)), measure);
+  }
+  return fmt::format("Which camera measures {}?", targets);
+}
+
 std::string requirement_answer(const Requirement& requirement) {
   if (const Candidate* const first = requirement.first_reached()) {
     const std::string what =
         first->price_class.empty()
             ? fmt::format("Choose {}; set it to {}", first->name, mode_words(*first))
             : fmt::format("Buy: {}, {}; set it to {}", model_of(first->name), first->price_class, mode_words(*first));
-    std::string text = fmt::format("{}; expect {} ({}; the target was {}).", what, expected_words(requirement, *first),
+    std::string text = fmt::format("{}. Expect {}: {}. The target was {}.", what, expected_words(requirement, *first),
                                    judged_words(requirement, *first), asked_words(requirement));
     const auto undecided = std::count_if(requirement.candidates.data(), first, [](const Candidate& candidate) {
       return candidate.verdict == Verdict::undecided;
@@ -233,7 +245,7 @@ std::string requirement_answer(const Requirement& requirement) {
                        expected_words(requirement, *near));
   }
   std::string text =
-      fmt::format("{} {}. {} comes nearest: expect {}{} ({}).",
+      fmt::format("{} {}. {} comes nearest. Expect {}{}: {}.",
                   near->verdict == Verdict::undecided ? "Nothing here is certain to reach" : "Nothing here reaches",
                   asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at best " : "",
                   expected_words(requirement, *near), judged_words(requirement, *near));

@@ -32,9 +32,12 @@ inline constexpr double kLeastNamedGain = 1.05;
 /// "µ within 0.0001" for a 95 % error, "an rms error of µ of 0.0001", "a bias of µ of 0.0001", with their units.
 std::string error_words(const validate::Target& target, const std::string& value);
 
-/// "Buy: CAMERA, PRICE; set it to MODE; expect µ within …, at most … (95 % of 8 rendered experiments)": the cheapest
-/// that reaches the targets; "Choose …" if no price is known. If none does, the nearest candidate and what limits it.
-/// Text, one line without its end.
+/// "Which camera measures K/m to 0.01 1/s and µ to 0.0005?" Text.
+std::string requirement_question(const validate::Requirement& requirement);
+
+/// "Buy: CAMERA, PRICE; set it to MODE. Expect µ within … (upper limit …): 95 % of 8 rendered experiments.": the
+/// cheapest that reaches the targets; "Choose …" if no price is known. If none does, the nearest candidate and what
+/// limits it. Text, one line without its end.
 std::string requirement_answer(const validate::Requirement& requirement);
 
 /// "This is 50 times better than needed: 11 frames/s, or … would do.", if that is the case; otherwise empty. Text.

@@ -346,7 +346,8 @@ std::string errors_text(const SweepSummary& summary) {
 
 std::string sweep_text(const SweepSummary& summary) {
   const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary);
-  std::string text = answer ? answer->text + "\n\n" + bandwidth_text(summary) : errors_text(summary);
+  std::string text =
+      answer ? without_code_marks(answer->text) + "\n\n" + bandwidth_text(summary) : errors_text(summary);
   // Runs of an estimator of the user's own fail in ways of their own, which its line counts.
   text += fmt::format("{} of {} runs", summary.runs, summary.planned);
   text += summary.outside && summary.failed == 0 ? "\n" : fmt::format(", {} failed\n", summary.failed);

@@ -191,6 +191,11 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
   return text;
 }
 
+std::string without_code_marks(std::string text) {
+  std::erase(text, '`');
+  return text;
+}
+
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;

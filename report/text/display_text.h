@@ -100,6 +100,9 @@ std::string shrink_text(const diagnose::GapSizes& gap);
 /// "a, b and c", or with another last word: "a, b, or c".
 std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
 
+/// Without the backticks around commands, which a page turns into code: for a terminal.
+std::string without_code_marks(std::string text);
+
 /// Columns aligned below their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
 /// characters, not bytes. base::printable_text() is applied to every cell: a clip's name must not steer the terminal.
 ///

@@ -230,7 +230,7 @@ WorksheetTexts worksheet_texts(const LawStudy& study, const std::string& languag
   texts.title = say("ws_title", {{"law", law}});
   texts.answers_title = say("ws_answers", {{"law", law}});
   texts.questions = {say("ws_question1", {{"track", curve.configuration},
-                                          {"alpha", given(curve.incline_deg, 4)},
+                                          {"alpha", given(std::round(10.0 * curve.incline_deg) / 10.0, 4)},
                                           {"v1", given(asked.v1_m_s)},
                                           {"v2", given(asked.v2_m_s)}}),
                      say("ws_question2", {{"g", given(curve.body.gravity_m_s2)}}), say("ws_question3", {})};

@@ -65,7 +65,7 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   CHECK(has(mu, "19.8 ± 5.4"));
   const std::string page = report::requirement_report(one_camera("mu", 0.0005, 1.8e-5)).html;
   CHECK(has(page, ">3 of 200</td>"));
-  CHECK(has(page, ">27</td>"));       // 1.5 of the bound: at most
+  CHECK(has(page, ">27</td>"));       // 1.5 of the bound: the upper limit
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
   CHECK(has(k, "rms error of K/m (10⁻³ 1/s)\n"));
@@ -117,7 +117,7 @@ TEST_CASE("points of require that lie close together share one label") {
 TEST_CASE("a label of require that would stand on the next point takes its number in") {
   validate::Requirement requirement = one_camera("mu", 0.0005, 1.8e-5);
   const validate::Candidate first = requirement.candidates.front();
-  // The axis is ln 100 + ln(1.2 x 1.6) = 5.26 long. Points join within 0.07 of it, 0.37, of the first: the second does,
+  // The axis is 1.17 ln 100 = 5.39 long. Points join within 0.07 of it, 0.38, of the first: the second does,
   // the third does not, but it lies 0.3 beside the end of their label.
   requirement.candidates.clear();
   for (const double cost : {10.0, 10.0 * std::exp(0.3), 10.0 * std::exp(0.6), 1000.0}) {
@@ -151,6 +151,11 @@ TEST_CASE("a plan says sizes with their units, and what to do about effects that
   // The page begins with the answer; on a phone an effect's size stands below its name and not beyond the edge.
   const std::string page = report::plan_page("plan", plan).html;
   CHECK(has(page, "</h1>\n<h2 id=\"meaning\">What this means</h2>\n<p><b>These motions can show 4 of the 5 effects"));
+  CHECK(has(page, "distinguish 2 of those from every other (lens distortion and wrong scale): 2 clips"));
+  const std::size_t lens = page.find("lens_distortion"), none = page.find("<b>none</b>");
+  CHECK(lens < none);
+  CHECK(none < page.find("scale_error"));
+  CHECK(page.find("<b>none</b>", page.find("load_independent_friction")) == std::string::npos);  // it is not seen
   CHECK(has(page, "<table class=\"names stack\">"));
   CHECK(page.find(">smallest size that shows</th>") < page.find(">what it is</th>"));
   plan.effects.erase(plan.effects.begin(), plan.effects.begin() + 2);

@@ -114,15 +114,21 @@ class VideoDecoder::Libav {
 
   double rate_hz() const {
     const AVRational rate = av_guess_frame_rate(container_, stream_, nullptr);
-    return rate.den == 0 ? 0.0 : av_q2d(rate);
+    const double hz = rate.den == 0 ? 0.0 : av_q2d(rate);
+    // Of frames at uneven times libav may name one tick of the clock (90000 a second): a unit of time, not a rate.
+    constexpr double kMostUneven = 2.5;  // fields are twice the frames
+    return mean_rate_hz() > 0.0 && hz > kMostUneven * mean_rate_hz() ? 0.0 : hz;
   }
+
+  double mean_rate_hz() const { return stream_->avg_frame_rate.den == 0 ? 0.0 : av_q2d(stream_->avg_frame_rate); }
 
   std::size_t stated_frames() const {
     auto count = static_cast<double>(stream_->nb_frames);
     if (stream_->nb_frames == 0) {
       double length_s = static_cast<double>(container_->duration) / AV_TIME_BASE;
       if (!(length_s > 0.0)) length_s = seconds(stream_->duration, stream_->time_base);
-      count = std::floor(length_s * rate_hz() + 0.5);
+      const double hz = rate_hz();
+      count = std::floor(length_s * (hz > 0.0 ? hz : mean_rate_hz()) + 0.5);
     }
     return count > 0.0 && count < 1e9 ? static_cast<std::size_t>(count) : 0;
   }

@@ -190,7 +190,9 @@ std::string share_text(double share, const std::optional<diagnose::GapInterval>&
   };
   std::string text = fmt::format("{:.{}f} %", percent(share), decimals);
   if (interval) {
-    text += fmt::format(" ({:.{}f} to {:.{}f} %)", percent(interval->low), decimals, percent(interval->high), decimals);
+    // A cause that takes the gap below its floor does so by chance: no share is above 100 %.
+    text += fmt::format(" ({:.{}f} to {:.{}f} %)", percent(std::min(1.0, interval->low)), decimals,
+                        percent(std::min(1.0, interval->high)), decimals);
   }
   return text;
 }

@@ -2,13 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <string>
 #include <variant>
 
 #include "base/text/number_text.h"
 
 namespace glidelab::report {
 namespace {
+
+/// "MagicYUV" for the tag M8G0 in a file; a tag that is not known stays as it is.
+std::string codec_name(const std::string& tag) {
+  struct Codec {
+    const char *tag, *name;
+  };
+  constexpr std::array<Codec, 9> kCodecs = {{{"M8", "MagicYUV"},
+                                             {"M0", "MagicYUV"},
+                                             {"avc1", "H.264"},
+                                             {"H264", "H.264"},
+                                             {"h264", "H.264"},
+                                             {"hvc1", "H.265"},
+                                             {"hev1", "H.265"},
+                                             {"MJPG", "MJPEG"},
+                                             {"mp4v", "MPEG-4"}}};
+  for (const Codec& codec : kCodecs) {
+    if (tag.starts_with(codec.tag)) return codec.name;
+  }
+  return tag;
+}
 
 namespace image = diagnose::image;
 
@@ -75,8 +97,9 @@ struct ImageSentence {
     const bool times = of.block_steps > 2.0;
     std::string text = fmt::format(
         "{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
-        !of.lossy ? "The file's compression is not known"
-                  : fmt::format("The file is compressed {} loss ({})", *of.lossy ? "with" : "without", of.codec),
+        !of.lossy
+            ? "The file's compression is not known"
+            : fmt::format("The file is compressed {} loss ({})", *of.lossy ? "with" : "without", codec_name(of.codec)),
         times
             ? fmt::format("{:.2g} times as large", 1.0 + of.block_steps)
             : fmt::format("{:.1f} % {}", 100.0 * std::abs(of.block_steps), of.block_steps < 0.0 ? "smaller" : "larger"),

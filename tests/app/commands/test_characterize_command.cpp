@@ -50,8 +50,11 @@ TEST_CASE("characterize of images with a gamma prints why there is no gain, and 
   const tests::ProcessResult result =
       tests::glidelab({"characterize", (temp / "flats").string(), "--out", (temp / "out").string()});
   INFO(result.out << result.err);
-  REQUIRE(result.status == 0);
+  REQUIRE(result.status == 4);
+  CHECK(result.out.starts_with("These images do not give the gain: "));
   CHECK(result.out.find("not linear in the light") != std::string::npos);
+  CHECK(result.err.find("; report: " + (temp / "out/report.html").string()) != std::string::npos);
+  CHECK(result.err.find("error:") == std::string::npos);  // the answer is no
   CHECK(result.err.find("incomplete") != std::string::npos);
   CHECK(base::read_file(temp / "out/camera.toml").find("gain_dn_per_e = nan") != std::string::npos);
 }

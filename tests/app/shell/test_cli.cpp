@@ -70,6 +70,14 @@ TEST_CASE("every command's help names the options that every command takes, and 
   }
 }
 
+TEST_CASE("no help says that an option excludes nothing") {
+  for (const std::string& command : kCommands) {
+    const std::string help = tests::glidelab({command, "--help"}).out;
+    INFO(help);
+    CHECK_FALSE(std::regex_search(help, std::regex("Excludes: *(\n|  )")));
+  }
+}
+
 TEST_CASE("help fits a terminal: only an option's own form may be longer than its lines") {
   std::vector<std::vector<std::string>> all = {{"--help"}};
   for (const std::string& command : kCommands) all.push_back({command, "--help"});

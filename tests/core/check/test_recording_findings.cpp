@@ -76,6 +76,24 @@ TEST_CASE("duplicated frames above 10 % make a clip unusable, whether identical 
   }
 }
 
+TEST_CASE("a rate of playback that is stated as filmed is said once, as a note; half the rate may be frames dropped") {
+  core::ClipCheck clip = fine_clip();
+  clip.frame_rate_hz = 240.0;
+  clip.container_rate_hz = 29.97;
+  clip.notes = {core::ContainerOfOtherRate{29.97, 240.0, true}};  // of the analysis
+  auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::note);
+  CHECK(found_as<core::found::OtherRateInFile>(findings[0]).file_hz == 29.97);
+  for (const auto& [file_hz, stated_hz] : {std::pair(30.0, 60.0), std::pair(120.0, 480.0), std::pair(60.0, 50.0)}) {
+    clip.container_rate_hz = file_hz;
+    clip.frame_rate_hz = stated_hz;
+    findings = of_clip(clip);
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0].severity == core::Severity::change);
+  }
+}
+
 TEST_CASE("repeats that the analysis leaves out are no obstacle where the times of the others hold") {
   for (const bool in_place_of_lost : {true, false}) {
     for (const double camera_hz : {0.0, 24.0}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/size_uncertainty.h"
+#include "diagnose/verdict/verdict.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -242,4 +244,26 @@ TEST_CASE("an explanation leaves the quantities if none moves by two standard de
   CHECK_FALSE(leaves_at(2.1));
   with.at.global[friction] *= 10.0;
   CHECK(leaves_at(0.0));
+}
+
+TEST_CASE("the ranking falls by probability, in whatever order the hypotheses were weighed, and then by evidence") {
+  Named made;
+  const auto add = [&](std::string_view id, double probability, double log_evidence) {
+    diagnose::Hypothesis one;
+    one.effects = {diagnose::effect_index(id)};
+    one.probability = probability;
+    one.log_evidence = log_evidence;
+    made.comparison.all.push_back(one);
+  };
+  namespace ids = diagnose::ids;
+  add(ids::place_friction, 0.0, 3.0);  // what images contradict was likely before
+  add(ids::quadratic_drag, 0.11, 1.0);
+  add(ids::rotational_inertia, 0.0, 5.0);
+  add(ids::track_bow, 0.06, 9.0);
+  std::vector<std::string> order;
+  for (const auto& ranked : diagnose::ranking_of(made.set, made.comparison, nullptr)) {
+    order.push_back(ranked.explanation.effects.front());
+  }
+  CHECK(order == std::vector<std::string>{std::string(ids::quadratic_drag), std::string(ids::track_bow),
+                                          std::string(ids::rotational_inertia), std::string(ids::place_friction)});
 }

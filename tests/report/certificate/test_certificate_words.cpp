@@ -109,7 +109,7 @@ TEST_CASE("a bias that one twin alone shows has no standard deviation") {
   CHECK(text.find("0.10 ± 0.10") != std::string::npos);
   CHECK(text.find("inf") == std::string::npos);
   made.quantities[0].bias_sds = {10.8692, 0.0123};
-  CHECK(report::certificate_text(made).find("10.869 ± 0.012") != std::string::npos);
+  CHECK(report::certificate_text(made).find("10.87 ± 0.01") != std::string::npos);
 }
 
 TEST_CASE("only changes that stand out are given as advice, three at most, and none is said in words") {
@@ -148,6 +148,47 @@ TEST_CASE("a change that reduces the errors by less than a tenth is no advice, h
   CHECK(report::best_changes(made).empty());
   CHECK(report::certificate_text(made).find("reduces the errors by a tenth or more, beyond chance") !=
         std::string::npos);
+}
+
+TEST_CASE("an advice that makes another quantity worse says so, and several causes are several") {
+  validate::Certificate fall = certificate();
+  fall.changes = {change(TwinLimit::cause, true)};
+  fall.changes[0].causes = {"quadratic_drag", "rotational_inertia"};
+  CHECK(report::best_changes(fall).front() ==
+        "Remove these causes from the experiment, or put them into the model (glidelab analyze --with quadratic_drag "
+        "--with rotational_inertia). With viscous and Coulomb friction alone, the errors of K/m and µ are 42 % (30 to "
+        "50 %) smaller.");
+  fall.changes[0].quantities = {{"v_lim_m_s", {-149.0, -189.0, -109.0}, false}};
+  CHECK(report::best_changes(fall).front() ==
+        "Put these causes into the model (glidelab analyze --with quadratic_drag --with rotational_inertia). With "
+        "viscous and Coulomb friction alone, the errors of K/m and µ are 42 % (30 to 50 %) smaller, but those of the "
+        "terminal velocity 150 times larger (110 to 190).");
+  fall.changes[0].quantities = {{"v_lim_m_s", {-0.3, -0.7, 0.1}, false}};  // by chance
+  CHECK(report::best_changes(fall).front().ends_with("smaller."));
+  fall.changes[0].quantities = {{"v_lim_m_s", {-0.3, -0.4, -0.2}, false}};
+  CHECK(report::best_changes(fall).front().ends_with("those of the terminal velocity 30 % (20 to 40 %) larger."));
+  CHECK(report::certificate_text(fall).find("What limits it, the largest first: causes that the law lacks.") !=
+        std::string::npos);
+  fall.quantities[2].wide_coverage = {20, 40, 0.5, 0.3, 0.7};
+  CHECK(report::certificate_answer(fall).ends_with("--with rotational_inertia` includes these causes in the law."));
+  CHECK(report::certificate_text(fall).find('`') == std::string::npos);  // a terminal has no code
+}
+
+TEST_CASE("quantities that no twin gives are said once with the reason, and fill no rows with dashes") {
+  validate::Certificate fall = certificate();
+  fall.quantities[1].failed = fall.quantities[1].asked;
+  fall.quantities[1].why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
+  fall.changes = {change(TwinLimit::few_clips, true)};
+  fall.setups = {{"a", 0.335, 0.0}};
+  fall.configurations = fall.quantities;
+  for (validate::CertifiedQuantity& one : fall.configurations) one.setup = 0;
+  const std::string text = report::certificate_text(fall), page = report::certificate_page("a", fall).html;
+  CHECK(text.find("No twin gives µ (no line for v > 0).") != std::string::npos);
+  CHECK(text.find("\nµ ") == std::string::npos);
+  CHECK(page.find("No twin gives µ (no line for v &gt; 0).") != std::string::npos);
+  CHECK(page.find("<td>µ</td>") == std::string::npos);
+  CHECK(page.find("<th class=\"n\">µ</th>") == std::string::npos);
+  CHECK(page.find(">terminal velocity (m/s)</td>") != std::string::npos);
 }
 
 TEST_CASE("an error that all but disappears is over 99.9 % smaller, not 100 %") {
@@ -230,7 +271,8 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
   validate::ChangedTwin two = change(TwinLimit::cause, true);
   two.causes = {"quadratic_drag", "track_bow"};
   CHECK(report::limit_words(two).advice ==
-        "Remove the cause from the experiment, or put it into the model (glidelab analyze --with quadratic_drag --with "
+        "Remove these causes from the experiment, or put them into the model (glidelab analyze --with quadratic_drag "
+        "--with "
         "track_bow)");
 }
 

@@ -71,5 +71,5 @@ TEST_CASE("an entrant that never answers has no rank, even if too few cases tell
   CHECK(report::challenge_json(score).find("\"rank\": null") != std::string::npos);
   CHECK(text.find("mine") > text.find("1          lines"));
   CHECK(text.find("µ: no answer from mine.") != std::string::npos);
-  CHECK(text.find("8 cases tell none of the 2 entrants that answer apart.") != std::string::npos);
+  CHECK(text.find("8 cases do not tell the two entrants that answer apart.") != std::string::npos);
 }

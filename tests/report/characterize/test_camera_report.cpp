@@ -115,7 +115,17 @@ TEST_CASE("a camera without a gain still has a page, which says why") {
     point.exposure_s.reset();
   }
   const std::string page = report::camera_report(camera).html;
-  CHECK(contains(page, "neighbouring pixels is correlated"));
+  const std::string answer =
+      "These images do not give the gain: the noise of neighbouring pixels is correlated (0.30), an effect of "
+      "demosaicing, denoising, scaling or lossy compression; raw images are needed.";
+  CHECK(page.find(answer) < page.find("Measured from"));
+  CHECK(page.find(answer) < page.find("<table"));
+  CHECK(page.find(answer) == page.rfind(answer));
+  for (const char* term : {"DN: digital number", "PRNU (photo-response", "DSNU (dark-signal"})
+    CHECK(contains(page, term));
+  CHECK_FALSE(contains(page, "The slope is the gain"));
+  CHECK(contains(report::camera_report(made_camera()).html, "The slope is the gain"));
+  CHECK(report::camera_text(camera).starts_with(answer + "\n"));
   CHECK_FALSE(contains(page, "Linearity: mean over exposure"));
   CHECK(nlohmann::json::parse(report::camera_json(camera)).at("line_intercept_dn2").is_null());
 }
@@ -166,4 +176,23 @@ TEST_CASE("a dark signal below zero is written as none seen") {
   camera.dark_signal_e_s = {-0.2, 0.3, {}, {}, {}};
   const std::string text = report::camera_toml(camera);
   CHECK(text.find("dark_signal_e_s = 0.0  # measured as -0.2, sd 0.3: not significant") != std::string::npos);
+}
+
+TEST_CASE("what is said of several numbers of a camera is said once, and a table of dashes is left out") {
+  core::CameraMeasurement camera = made_camera();
+  const core::Measured none = missing(core::unmeasured::NoGain{});
+  camera.gain_dn_per_e = missing(core::unmeasured::PixelsTogether{0.3});
+  for (core::Measured* const of :
+       {&camera.read_noise_e, &camera.offset_dn, &camera.full_well_e, &camera.saturation_capacity_e,
+        &camera.dark_signal_e_s, &camera.prnu, &camera.dsnu_e, &camera.linearity_error}) {
+    *of = none;
+  }
+  const std::string text = report::camera_text(camera), page = report::camera_report(camera).html;
+  const std::string once =
+      "read noise, offset, full well, saturation capacity, dark signal, PRNU, DSNU, linearity error: the gain is "
+      "needed, and it is not known";
+  CHECK(contains(text, once));
+  CHECK(contains(page, "<li>" + once + "</li>"));
+  CHECK_FALSE(contains(text, "–"));
+  CHECK_FALSE(contains(page, "<table"));
 }

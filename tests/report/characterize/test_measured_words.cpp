@@ -16,7 +16,7 @@ TEST_CASE("every reason why a camera's number is missing has words, with its lim
   using Shown = unmeasured::NotLinear::Shown;
   const std::string not_linear = ": the codes are not linear in the light";
   const std::vector<std::pair<core::WhyUnmeasured, std::string>> rows = {
-      {unmeasured::NoGain{}, "it requires the gain"},
+      {unmeasured::NoGain{}, "the gain is needed"},
       {unmeasured::DarkLevelCut{0.25}, "25 % of the dark samples are at code 0"},
       {unmeasured::FewPoints{1, true},
        "1 usable point in the diagram; at least 3 are needed: levels above the "

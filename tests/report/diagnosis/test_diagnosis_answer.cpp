@@ -160,9 +160,14 @@ TEST_CASE("the waterfall names the gap before, each cause with its share, and wh
   REQUIRE(plots.front().drawing.data.size() == 2);
   CHECK(plots.front().drawing.data[0].rows.size() == 4);
   CHECK(plots.front().drawing.data[1].rows.size() == 1);  // whiskers where there is an interval
+  CHECK(plots.front().caption.ends_with("; whiskers are 95 % intervals over clips"));
   const double share = of.explained.front().share;
   of.explained.front().share_interval95 = diagnose::GapInterval{share - 0.001, share + 0.001};  // as thin as its line
   CHECK(report::waterfall_plots(of).front().drawing.data.size() == 1);
+  CHECK(report::waterfall_plots(of).front().caption.find("whiskers") == std::string::npos);
+  of.explained.back().share_interval95 = diagnose::GapInterval{-0.005, 0.1};
+  CHECK(report::waterfall_plots(of).front().drawing.script.find("(−1 to 10") != std::string::npos);
+  of.explained.back().share_interval95.reset();
   of.explained.front().share_interval95.reset();
   CHECK(report::waterfall_plots(of).front().drawing.data.size() == 1);
   CHECK_FALSE(report::page("waterfall", report::figures(report::waterfall_plots(of))).html.empty());

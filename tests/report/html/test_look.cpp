@@ -169,6 +169,62 @@ TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one l
   CHECK(says(*dom, "spare=\"true\""));  // 13ch are some 125 pixels
 }
 
+namespace {
+
+/// What its scripts say of the page 400 pixels wide, which a window of chromium is not: a frame within one.
+std::optional<std::string> seen_on_a_phone(const std::filesystem::path& folder, const std::string& html) {
+  base::write_file(folder / "page.html", html);
+  base::write_file(
+      folder / "phone.html",
+      "<!doctype html><html><body><iframe src=\"page.html\" width=\"400\" height=\"900\"></iframe></body>");
+  return browser(folder,
+                 {"--allow-file-access-from-files", "--dump-dom", "file://" + (folder / "phone.html").string()});
+}
+
+}  // namespace
+
+TEST_CASE("on a narrow screen a plot fits, and one too wide for that scrolls below a shadow") {
+  const tests::TempDir temp;
+  const report::Plot wide{{"plot sin(x)", {}, {620, 420}}, "wide", "wide"};
+  const report::Plot plain{{"plot sin(x)", {}}, "plain", "plain"};
+  std::string html = report::page("look", report::figures({plain, wide})).html;
+  html.insert(html.find("</body>"),
+              "<script>const said = parent.document.documentElement.dataset;\n"
+              "const [plain, wide] = document.querySelectorAll('figure');\n"
+              "const cut = (box) => box.scrollWidth > box.clientWidth;\n"
+              "said.fits = !cut(plain) && plain.querySelector('.scroll') === null;\n"
+              "said.scrolls = cut(wide.querySelector('.scroll'));\n"
+              "said.seen = getComputedStyle(wide.querySelector('img')).mixBlendMode;</script>");
+  const auto dom = seen_on_a_phone(temp.path(), html);
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "fits=\"true\""));
+  CHECK(says(*dom, "scrolls=\"true\""));
+  CHECK((says(*dom, "seen=\"darken\"") || says(*dom, "seen=\"lighten\"")));  // the shadow below shows through
+}
+
+TEST_CASE("in a narrow block long numbers stand below each other, not beside each other and cut") {
+  const tests::TempDir temp;
+  report::HtmlTable table({"masses", "K/m (1/s)", "µ", "α (°)"}, 1);
+  table.stack_when_narrow(1);
+  table.row({"m1", "2.76699 ± 0.00012", "0.0049995912345 ± 0.0000009912345", "4.31 ± 0.01"});
+  std::string html = report::page("look", report::Html(table.str())).html;
+  html.insert(html.find("</body>"),
+              "<script>const said = parent.document.documentElement.dataset, box = document.querySelector('.scroll');\n"
+              "const cells = document.querySelectorAll('td');\n"
+              "said.whole = box.scrollWidth <= box.clientWidth;\n"
+              "said.below = cells[2].offsetTop > cells[1].offsetTop;</script>");
+  const auto dom = seen_on_a_phone(temp.path(), html);
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "whole=\"true\""));
+  CHECK(says(*dom, "below=\"true\""));
+}
+
 TEST_CASE("four images stand in one row or two by two, a note with a list is as wide as one without") {
   const tests::TempDir temp;
   std::string images;

@@ -1,9 +1,11 @@
 #include "report/requirement/requirement_words.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "report/requirement/requirement_plot.h"
 #include "report/requirement/requirement_report.h"
 #include "tests/catch.h"
 
@@ -91,16 +93,46 @@ TEST_CASE("a codec is said as it is set, and a target with its measure") {
 
 TEST_CASE("the first line of require says what to buy, how to set it and what to expect, on screen and page") {
   const std::string line =
-      "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s; "
-      "expect µ within 0.00006, at most 0.000078 (95 % of 20 rendered experiments, analysed with the fit of the whole "
-      "motion; the target was µ within 0.0001). Prices are rough, and exclude the computer.";
+      "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s. "
+      "Expect µ within 0.00006 (upper limit 0.000078): 95 % of 20 rendered experiments, analysed with the fit of the "
+      "whole motion. The target was µ within 0.0001. Prices are rough, and exclude the computer.";
   CHECK(report::requirement_answer(cameras()) == line);
   CHECK(report::requirement_text(cameras()).starts_with(line + "\n"));
   CHECK(report::enough_words(cameras()).empty());
   CHECK_THAT(report::requirement_json(cameras()), Contains("\"answer\": \"Buy: board (OV5647)"));
   const std::string html = report::requirement_report(cameras()).html;
-  CHECK(html.find("Which of these is good enough: ") < html.find("Buy: board (OV5647)"));
+  CHECK(html.find("Which camera measures µ to 0.0001?") < html.find("Buy: board (OV5647)"));
   CHECK(html.find("Buy: board (OV5647)") < html.find("<figure"));
+}
+
+TEST_CASE("the question of require names the quantities, with their units and any other measure than a 95 % error") {
+  validate::Requirement requirement = cameras();
+  using Measure = validate::Target::Measure;
+  requirement.targets = {{"k_over_m_1_s", Measure::error95, 0.01}, {"mu", Measure::error95, 0.0005}};
+  CHECK(report::requirement_question(requirement) == "Which camera measures K/m to 0.01 1/s and µ to 0.0005?");
+  requirement.targets = {{"alpha_deg", Measure::sd, 0.01}, {"mu", Measure::bias, 0.001}};
+  CHECK(report::requirement_question(requirement) == "Which camera measures α to 0.01° (rms) and µ to 0.001 (bias)?");
+}
+
+TEST_CASE("a camera at hand, which costs nothing, is in the plot of require, where its line begins") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[0].price = 0.0;
+  requirement.candidates[0].verdict = validate::Verdict::reached;
+  const report::Plot plot = report::requirement_plot(requirement);
+  const auto block = [&](const std::string& name) {
+    return std::ranges::find(plot.drawing.data, name, &report::PlotData::name)->rows;
+  };
+  CHECK(block("met").front()[0] == 0.0);
+  CHECK(block("front").front()[0] == 0.0);
+  CHECK_THAT(plot.drawing.script, Contains("set nonlinear x") && Contains("'0' 0,") && !Contains("set logscale x"));
+  const report::Page page = report::requirement_report(requirement);
+  const std::string& drawn = page.files.at("plots/01-accuracy-reached-against-cost.svg");
+  CHECK_THAT(drawn, Contains(">0</tspan>") && Contains(">10</tspan>"));
+  requirement.candidates[0].price = 12.0;
+  CHECK_THAT(report::requirement_plot(requirement).drawing.script,
+             Contains("set logscale x") && !Contains("set nonlinear x"));
+  for (validate::Candidate& candidate : requirement.candidates) candidate.price = 0.0;  // nothing to divide by
+  CHECK(report::requirement_report(requirement).files.contains("plots/01-accuracy-reached-against-cost.svg"));
 }
 
 TEST_CASE("an estimator that judges every camera is named once, otherwise beside each camera") {
@@ -165,11 +197,10 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   requirement.candidates[2].results[0].high = 2.6e-4;
   requirement.candidates[1].results[0].found = 3e-4;
   requirement.candidates[2].limits = {{validate::Limitation::light, 3.0}};
-  CHECK_THAT(
-      report::requirement_answer(requirement),
-      Contains(
-          "Nothing here reaches µ within 0.0001. phone comes nearest: expect µ within 0.0002, at most 0.00026 (") &&
-          Contains("Its main limitation: light (no shot noise)"));
+  CHECK_THAT(report::requirement_answer(requirement),
+             Contains("Nothing here reaches µ within 0.0001. phone comes nearest. Expect µ within 0.0002 (upper limit "
+                      "0.00026): ") &&
+                 Contains("Its main limitation: light (no shot noise)"));
   const std::string html = report::requirement_report(requirement).html;
   CHECK_THAT(html,
              Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise): 3.0 times</li>"));
@@ -199,5 +230,5 @@ TEST_CASE("what the bound alone says is what is expected at best") {
   requirement.candidates[0].verdict = validate::Verdict::impossible;
   requirement.candidates[0].results = {{4.2e-4, {}, 0.0, 0, 0, ""}};
   CHECK_THAT(report::requirement_answer(requirement),
-             Contains("comes nearest: expect at best µ within 0.00042 (judged by the bound alone; nothing was run)."));
+             Contains("comes nearest. Expect at best µ within 0.00042: judged by the bound alone; nothing was run."));
 }

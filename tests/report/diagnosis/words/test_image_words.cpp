@@ -35,8 +35,9 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
       {image::Sway{How::drifts, 0.4, 0.0, 0.0024}, "up to 2.4 mm/s along it: every speed is uncertain by as much"},
       {image::Sway{How::rests, 0.02, 0.0}, "at rest: the fixed scene stays within 0.02 px"},
       {image::Compression{true, "H264", 0.5, {}},
-       "The file is compressed with loss (H264); steps between pixels are 50.0 % larger at the edges of 8 × 8 blocks "
+       "The file is compressed with loss (H.264); steps between pixels are 50.0 % larger at the edges of 8 × 8 blocks "
        "than elsewhere."},
+      {image::Compression{false, "M8G0", -0.01, {}}, "without loss (MagicYUV)"},
       {image::Compression{false, "FFV1", -0.01, {}}, "without loss (FFV1); steps between pixels are 1.0 % smaller"},
       {image::Compression{{}, "", 3.0, 1.5},
        "The file's compression is not known; steps between pixels are 4 times as large at the edges of 8 × 8 blocks as "
