@@ -4,7 +4,14 @@
 
 #include <cmath>
 
+#include "core/result/estimate.h"
+
 namespace glidelab::core {
+
+std::optional<LengthUnit> unit_of_long_run(double range_m) {
+  if (range_m > kLongestRun_m) return likely_unit(range_m, kUsualRun_m);
+  return std::nullopt;
+}
 
 Found::Found(const Found&) = default;
 Found::Found(Found&&) noexcept = default;

@@ -64,6 +64,8 @@ inline LengthUnit likely_unit(double value, double usual_m) {
 
 /// Metres that a body usually covers; kLongestRun_m (core/result/estimate.h) is the most.
 inline constexpr double kUsualRun_m = 1.0;
+/// The unit in which a run of more than kLongestRun_m is likely to be stated; empty for one that a body may cover.
+std::optional<LengthUnit> unit_of_long_run(double range_m);
 /// Positions farther apart make a unit doubtful: in space on an incline of less than 60 degrees, in a fall, in time.
 inline constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0, kSlowFrames_s = 1.0;
 

@@ -319,7 +319,9 @@ found::BeyondGravity beyond_gravity(double a, double distance_m, const ClipSetup
     if (!too_long && of_gravity > range.least && of_gravity < range.most) found.units.push_back(unit);
   }
   // The times may be wrong as well: then the distance alone tells.
-  if (found.units.empty() && distance_m > kLongestRun_m) found.units = {likely_unit(distance_m, kUsualRun_m)};
+  if (found.units.empty()) {
+    if (const std::optional<LengthUnit> unit = unit_of_long_run(distance_m)) found.units = {*unit};
+  }
   return found;
 }
 

@@ -10,7 +10,6 @@
 
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
-#include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"
@@ -86,13 +85,12 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
           fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity", configuration_name(results, c),
                       base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd));
       const double range_m = longest_range_m(results, c);
-      if (range_m > core::kLongestRun_m) {
-        const core::LengthUnit unit = core::likely_unit(range_m, core::kUsualRun_m);
+      if (const std::optional<core::LengthUnit> unit = core::unit_of_long_run(range_m)) {
+        const double per_metre = core::per_metre(*unit);
         doubts.push_back(fmt::format(
             "{}, and x covers {:.4g}, which looks like {} ({:.3g} m). Give x in metres: divide the column by {:.0f}, "
-            "or "
-            "name its unit in the header.",
-            begins, range_m, core::name_of(unit).many, range_m / core::per_metre(unit), core::per_metre(unit)));
+            "or name its unit in the header.",
+            begins, range_m, core::name_of(*unit).many, range_m / per_metre, per_metre));
       } else if (line.k_over_m_1_s.value > kLeastDoubtSds * line.k_over_m_1_s.sd) {
         doubts.push_back(begins +
                          ": K/m is too large. Either the drag grows faster than proportionally to the speed, "
