@@ -76,7 +76,8 @@ TEST_CASE("duplicated frames above 10 % make a clip unusable, whether identical 
   }
 }
 
-TEST_CASE("a rate of playback that is stated as filmed is said once, as a note; half the rate may be frames dropped") {
+TEST_CASE(
+    "a rate of playback that is stated as filmed is said once, as a note, and half the rate may be frames dropped") {
   core::ClipCheck clip = fine_clip();
   clip.frame_rate_hz = 240.0;
   clip.container_rate_hz = 29.97;
