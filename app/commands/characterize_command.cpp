@@ -12,7 +12,6 @@
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_transfer.h"
 #include "report/characterize/camera_report.h"
-#include "report/characterize/camera_toml.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {

@@ -1,27 +1,46 @@
-/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values compared with their truth.
+/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values compared with their truth;
+/// with --baseline or --write-baseline, whether the analysis is worse than it was.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
-#include "app/commands/baseline_gate.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
+#include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
+#include "fit/outside/outside_estimator.h"
 #include "render/scenario/scenario.h"
 #include "report/analysis/result_files.h"
 #include "report/html/gnuplot.h"
 #include "report/text/display_text.h"
+#include "report/text/outside_text.h"
+#include "report/validation/gate_text.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
+#include "validate/study/baseline/gate.h"
 
 namespace glidelab::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// --baseline, --write-baseline: is the analysis worse than it was?
+struct BaselineGate {
+  std::string compare;  ///< --baseline
+  std::string write;    ///< --write-baseline
+  std::uint64_t runs = 100;
+  std::optional<double> noise_m = {};
+  bool wanted() const { return !compare.empty() || !write.empty(); }
+};
 
 struct ValidateOptions {
   CommonOptions common;
@@ -29,6 +48,48 @@ struct ValidateOptions {
   BaselineGate gate;
   OutsideOptions outside;
 };
+
+/// NotMet if something is worse. If there is an outside estimator, it alone is judged.
+void run_baseline_gate(const ValidateOptions& asked, const std::optional<fit::OutsideEstimator>& outside) {
+  const BaselineGate& gate = asked.gate;
+  const CommonOptions& common = asked.common;
+  if (!gate.write.empty()) {
+    check_file_writable(gate.write);
+    check_own_file(gate.write, "--write-baseline", "{");
+    std::error_code error;  // of a file that does not exist
+    if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
+      throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
+                                         "another file: the baseline of the comparison is not overwritten"});
+    }
+  }
+  const std::string text = base::read_file(asked.scenario);
+  const render::Scenario scenario = render::read_scenario(text, asked.scenario, render::ScenarioChecks::values);
+  validate::GateOptions options;
+  options.baseline = gate.compare;
+  options.noise_m = gate.noise_m;
+  options.seed = common.seed;
+  options.runs = gate.runs;
+  options.jobs = common.jobs;
+  options.outside = outside;
+  ProgressDisplay display(common.quiet, common.verbose);
+  validate::Gate found = validate::run_gate(scenario, text, asked.scenario, options, display.callback());
+  display.clear();
+  throw_if_interrupted();
+  print_result(common.json ? validate::baseline_json(found.now) : report::errors_table(found.now));
+  if (found.outside) say(common, report::outside_text(*found.outside));
+  if (!gate.write.empty()) write_whole(gate.write, validate::baseline_json(found.now));
+  if (!found.then) return;
+  found = validate::compared(std::move(found));
+  say(common, report::power_text(*found.comparison));
+  say(common, report::detectable_text(found));
+  if (const std::string weak = report::weak_text(found); !weak.empty()) say(common, weak);
+  const std::string worse = report::worse_text(*found.comparison);
+  if (worse.empty()) {
+    say(common, "nothing is worse than the baseline");
+    return;
+  }
+  throw base::NotMet(fmt::format("worse than {}:\n{}", gate.compare, worse));
+}
 
 /// Copies the trajectories, as `simulate` writes them, next to the other results.
 void copy_trajectories(const fs::path& truth, const fs::path& dir) {
@@ -40,7 +101,7 @@ void copy_trajectories(const fs::path& truth, const fs::path& dir) {
 
 void validate_command(const ValidateOptions& options) {
   const std::optional<fit::OutsideEstimator> outside = options.outside.estimator();
-  if (options.gate.wanted()) return run_baseline_gate(options.gate, options.common, options.scenario, outside);
+  if (options.gate.wanted()) return run_baseline_gate(options, outside);
   const render::Scenario scenario = render::read_scenario(options.scenario);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "validate", options.scenario);

@@ -15,6 +15,7 @@
 #include <limits>
 #include <thread>
 #include <vector>
+
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"

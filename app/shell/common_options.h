@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 #include "base/errors.h"
 #include "core/experiment/permissions.h"
 #include "core/track/bare_track.h"
@@ -98,14 +99,6 @@ void print_answer(std::string_view text);
 
 /// One line on standard error, unless --quiet.
 void say(const CommonOptions& options, std::string_view line);
-
-}  // namespace glidelab::app
-
-namespace CLI {
-class App;
-}
-
-namespace glidelab::app {
 
 /// Adds --allow-outside and --max-megapixels, which set `permitted`.
 void add_permissions(CLI::App& command, core::Permissions& permitted);

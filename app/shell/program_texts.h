@@ -26,14 +26,6 @@ std::string shown_type(const CLI::Option& option);
 /// bash-completion/completions) or "zsh" (a file _glidelab on its fpath).
 std::string completion_script(const CLI::App& app, const std::string& shell);
 
-}  // namespace glidelab::app
-
-namespace CLI {
-class App;
-}  // namespace CLI
-
-namespace glidelab::app {
-
 /// A manual page of section 1 (roff, man(7)).
 std::string man_page(const CLI::App& app);
 

@@ -1,5 +1,5 @@
 /// Quantiles and tails of the usual distributions (Boost.Math, whose templates are compiled here once). Degrees of
-/// freedom are finite and above 0, probabilities lie in (0, 1).
+/// freedom are above 0 and, unless it says otherwise, finite; probabilities lie in (0, 1).
 #pragma once
 
 namespace glidelab::base {
@@ -18,9 +18,9 @@ double chi2_upper_quantile(double degrees, double p);  ///< exceeded with probab
 
 double beta_quantile(double a, double b, double p);
 
-/// The 95 % interval of the normal distribution.
+/// Half the width of the normal distribution's 95 % interval, in standard deviations: the 0.975 quantile.
 ///
-/// Half its width in standard deviations: the 0.975 quantile.
+/// A constant, unlike normal_quantile(0.975).
 inline constexpr double kNormal95 = 1.959963984540054;
 
 }  // namespace glidelab::base

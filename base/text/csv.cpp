@@ -10,7 +10,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "base/text/trimmed.h"
+#include "base/text/readable_text.h"
 
 namespace glidelab::base {
 namespace {

@@ -1,4 +1,5 @@
-/// Text of other programs and of files, made fit for a message, a file and a terminal.
+/// Text of other programs and of files: without the blanks at its ends, and made fit for a message, a file and a
+/// terminal.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,13 @@
 #include <string_view>
 
 namespace glidelab::base {
+
+/// The part of `text` between the first and the last character that is none of `blanks`; empty if there is none.
+inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
 
 /// The text with U+FFFD for each byte that is not part of well-formed UTF-8 (Unicode 15, table 3-7).
 std::string valid_utf8(std::string_view text);

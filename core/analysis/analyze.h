@@ -23,7 +23,7 @@ struct AnalysisOptions {
   int jobs = 1;                       ///< clips analysed at the same time
   FrameOpener open = open_frames;     ///< where the clips' frames come from
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: choose_bandwidth()
-  std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother.h
+  std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother_list.h
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool images = false;         ///< keep what the clips' images show besides the motion (ClipResult::images)

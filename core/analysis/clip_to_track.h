@@ -23,15 +23,15 @@
 
 namespace glidelab::core {
 
-/// What the images of a folder show besides the motion.
+/// What the images of a folder show.
 struct ImageResults {
   std::vector<TrackData> tracks;             ///< one for each clip, in the experiment's order
   std::vector<std::vector<MarkerFit>> fits;  ///< one for each clip: the marker's image wherever it was seen, frames
                                              ///< rise
   std::optional<CalibrationResult> calibration;
   std::vector<PlumbResult> plumbs;
-  std::size_t modes =
-      0;  ///< independent errors of camera, planes and codec: maximum number of entries in every track's shared_m
+  /// Independent errors of camera, planes and codec: the largest number of entries in any track's shared_m.
+  std::size_t modes = 0;
   std::vector<std::optional<MarkerNotFound>> without_marker;  ///< one for each clip; its track is empty then
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 #include <variant>
+
 #include "base/math/angles.h"
 #include "core/check/check_result.h"
 #include "core/check/light_findings.h"

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <vector>
+
 #include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
 
@@ -15,9 +16,9 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
 /// Statements in a wrong unit, found from their size and from what the motion says: the one cause behind many findings.
 ///
 /// A square, a marker, a track and a mass each have a usual size in a laboratory; one that is a hundred or a thousand
-/// times as large is in centimetres, millimetres or grams. An inclination that agrees
-/// with the motion once it is taken as radians is in radians, and one that agrees once the file's frame rate is taken
-/// has a wrong frame_rate_hz. docs/reference/check.md explains the limits.
+/// times as large is in centimetres, millimetres or grams. An inclination that agrees with the motion once it is taken
+/// as radians is in radians, and one that agrees once the file's frame rate is taken has a wrong frame_rate_hz.
+/// docs/reference/check.md explains the limits.
 ///
 /// "square_m = 40 looks like millimetres (0.04 m)", and the advice; from the statements alone. `longest_m`: the longest
 /// distance that a clip covers, 0 if it is not known; beyond 20 m, which no glider covers, any mass is accepted.

@@ -5,7 +5,7 @@
 
 namespace glidelab::core {
 
-/// x = middle + v (t - t_m) + a (t - t_m)²/2, where t_m lies in the middle of the times.
+/// x = middle + v u + a u²/2, u = t - middle_s, where middle_s lies in the middle of the times.
 struct Parabola {
   double middle_s = 0.0;
   double middle = 0.0;

@@ -51,16 +51,16 @@ struct MotionOptions {
   std::string bandwidth_rule = {};         ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
-  std::string smoother = "local-polynomial";  ///< a name of smoother.h (asserted)
+  std::string smoother = "local-polynomial";  ///< a name of smoother_list.h (asserted)
 };
 
 /// InputError for an unknown smoother, and if a smoother without a bandwidth is combined with an option that needs one:
 /// a bandwidth, a rule that chooses one, generalised lines.
 void check_smoothing(const MotionOptions& options);
 
-/// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and v
-/// > 0. A given bandwidth is used (InputError if it is longer than the clip); otherwise the named rule or
-/// choose_bandwidth() chooses it. Not for a track of speeds (asserted): speed_motion.h.
+/// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and one for v > 0. A given bandwidth
+/// is used (InputError if it is longer than the clip); otherwise the named rule or choose_bandwidth() chooses it. Not
+/// for a track of speeds (asserted): speed_motion.h.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 }  // namespace glidelab::core

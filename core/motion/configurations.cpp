@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
 #include "base/math/angles.h"
 #include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"
@@ -14,7 +15,6 @@
 #include "core/motion/lines/mu_and_alpha.h"
 #include "core/motion/speed_motion.h"
 #include "core/motion/steady_fall.h"
-#include "core/result/one_direction.h"
 
 namespace glidelab::core {
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <set>
 #include <string_view>
+
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/experiment/clip_setup.h"
@@ -21,7 +22,7 @@ bool is_bare_track(const std::filesystem::path& path) {
 
 std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
   std::vector<TrackRun> runs;
-  if (is_tracker_project(file)) {
+  if (looks_like_tracker_project(file)) {
     for (const std::string& mass : point_masses_of(file)) runs.push_back({mass, mass});
     return runs;
   }
@@ -151,7 +152,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
 
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
                      SpeedsAlone speeds, const ImageUnits& units) {
-  if (is_tracker_project(file)) {
+  if (looks_like_tracker_project(file)) {
     refuse_unneeded(units, file.string(), "a Tracker project, with times and a scale of its own");
     return read_tracker_project(file, downhill, column);
   }

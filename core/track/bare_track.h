@@ -57,10 +57,10 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
 
 /// Reads a motion that was tracked elsewhere, from any supported file.
 ///
-/// For a Tracker project (is_tracker_project()) read_tracker_project(), for any other file read_track_csv(). `column`
-/// is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is an
-/// InputError there, and an empty value means that its x is positive downhill. InputError for units of images that were
-/// stated for this file, which has seconds or metres of its own.
+/// For a Tracker project (looks_like_tracker_project()) read_tracker_project(), for any other file read_track_csv().
+/// `column` is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is
+/// an InputError there, and an empty value means that its x is positive downhill. InputError for units of images that
+/// were stated for this file, which has seconds or metres of its own.
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
                      SpeedsAlone speeds = SpeedsAlone::refused, const ImageUnits& units = {});
 

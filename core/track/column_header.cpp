@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/text/trimmed.h"
+#include "base/text/readable_text.h"
 #include "core/experiment/file_names.h"
 
 namespace glidelab::core {

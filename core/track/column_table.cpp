@@ -11,7 +11,6 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/text/readable_text.h"
-#include "base/text/trimmed.h"
 #include "core/track/number_field.h"
 #include "core/track/stacked_runs.h"
 #include "core/track/text_encoding.h"

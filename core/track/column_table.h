@@ -21,6 +21,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 #include "base/errors.h"
 #include "core/track/column_header.h"
 

@@ -22,8 +22,8 @@ struct ChosenColumns {
   std::optional<Across> across = {};
 };
 
-inline constexpr double kOtherAxis = 3.0;  ///< extent along y over that along x: above it the motion is along y
-inline constexpr std::size_t kFewestOfPath = 8;
+inline constexpr double kOtherAxis = 3.0;        ///< extent along y over that along x: above it the motion is along y
+inline constexpr std::size_t kFewestOfPath = 8;  ///< positions
 
 /// In metres, without rows that say that nothing was seen: a line to them is no path. May be empty.
 PlanePath path_of(const TableColumn& x, const TableColumn& y);

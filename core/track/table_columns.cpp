@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+
 #include "base/errors.h"
 #include "core/experiment/file_names.h"
 #include "core/math/plane_path.h"

@@ -25,6 +25,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 #include "core/result/analysis_note.h"
 #include "core/track/column_table.h"
 #include "core/track/path_columns.h"

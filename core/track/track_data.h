@@ -78,8 +78,8 @@ void refuse_unneeded(const ImageUnits& units, const std::string& file, const std
 /// metres and seconds are assumed, and a note says so. With `units`, frame numbers are times where no column holds
 /// times, and lengths in pixels, or without a unit, are divided by the scale, whose uncertainty all positions share.
 /// Rows in which the program that followed the body gives it a likelihood below kLeastLikelihood are left out, with a
-/// note that counts them. Rows without time or x are left out (columns of several runs
-/// differ in length), and a note counts those that lie between others.
+/// note that counts them. Rows without time or x are left out (columns of several runs differ in length), and a note
+/// counts those that lie between others.
 ///
 /// x is multiplied by `downhill`. If x is a height that was not requested, a note says so (HeightTaken); its sign is
 /// that of the table, and core/analysis/clip_to_track.h decides for all clips of a set-up together. InputError: no or
@@ -93,8 +93,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
 /// the speeds are reversed.
 void reverse(const std::vector<TrackData*>& tracks);
 
-/// Reverses all tracks if the sum of their drops (core/math/signed_drop.h) is negative. The tracks
-/// are of one set-up, so that one sign holds for all.
+/// Reverses all tracks if the sum of their drops (core/math/signed_drop.h) is negative. The tracks are of one set-up,
+/// so that one sign holds for all.
 void count_downwards(const std::vector<TrackData*>& tracks);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or a table exported

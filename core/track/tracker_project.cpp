@@ -263,7 +263,7 @@ void take_steps_as_frames(const TrackerProject& project, const std::vector<Place
 
 }  // namespace
 
-bool is_tracker_project(const fs::path& file) {
+bool looks_like_tracker_project(const fs::path& file) {
   const std::string first = first_bytes_of(file, kLookedAt);
   return is_zip_archive(first) ? !is_spreadsheet(file) : is_xml(first);
 }

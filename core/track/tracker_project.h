@@ -18,7 +18,7 @@ namespace glidelab::core {
 
 /// A zip archive without a spreadsheet (workbook.h), or XML, by the file's first bytes. (read_tracker_project() decides
 /// whether it is a project.) InputError if it begins like a zip archive and is none.
-bool is_tracker_project(const std::filesystem::path& file);
+bool looks_like_tracker_project(const std::filesystem::path& file);
 
 /// `point_mass`: its name ("PROJECT.trk: NAME" if several projects have it) or its number from 1 on; empty if there is
 /// only one. If `downhill` is empty, x is positive along +X, or along whichever of +Y and -Y points towards the image's

@@ -8,9 +8,9 @@
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
+#include "core/motion/lines/mu_and_alpha.h"
 #include "core/motion/steady_fall.h"
 #include "core/result/estimate.h"
-#include "core/result/one_direction.h"
 
 namespace glidelab::fit {
 namespace {

@@ -23,7 +23,7 @@
 #include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/analysis/analysis_report.h"
@@ -179,7 +179,7 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, const GivenGravity& give
   const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::check_given_causes(choices.with_effects, kWithEffects);
   Analysed made = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    const GivenTracks tracks = read_given(std::move(given));
+    const GivenTracks tracks = read_tracks(std::move(given));
     core::AnalysisResults of_lines =
         core::analyze_tracks(tracks.setups, tracks.tracks, gravity, how, choices.jobs, progress);
     for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;

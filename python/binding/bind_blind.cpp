@@ -14,7 +14,7 @@
 #include "base/files/child_process.h"
 #include "base/files/file_io.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_estimator.h"
+#include "python/binding/given_input.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/blind/blind_report.h"

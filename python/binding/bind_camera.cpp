@@ -17,7 +17,7 @@
 #include "core/pictures/camera/calibrate.h"
 #include "core/pictures/marker/marker_fit.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "python/binding/watched_work.h"
 #include "report/analysis/note_words.h"
 

@@ -16,8 +16,7 @@
 #include "diagnose/next/plan.h"
 #include "diagnose/verdict/diagnose.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_scenario.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/diagnosis/diagnosis_json.h"
@@ -81,7 +80,7 @@ py::tuple diagnose_arrays(std::vector<GivenTrack> given, const GivenGravity& giv
                           const py::object& progress_told) {
   const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    GivenTracks tracks = read_given(std::move(given));
+    GivenTracks tracks = read_tracks(std::move(given));
     for (core::ClipSetup& setup : tracks.setups) setup.recorded_by = core::recorder_named(recorded_by);
     // As in diagnose::diagnose() for tracks from files: times as given, no camera.
     core::AnalysisResults results = core::analyze_tracks(tracks.setups, tracks.tracks, gravity,
@@ -119,7 +118,7 @@ Outcome plan_arrays(std::vector<GivenTrack> given, const GivenGravity& given_gra
                     const py::object& progress_told) {
   const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::Plan plan = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    const GivenTracks tracks = read_given(std::move(given));
+    const GivenTracks tracks = read_tracks(std::move(given));
     return diagnose::plan_of(core::analyze_tracks(tracks.setups, tracks.tracks, gravity, {}, jobs, progress),
                              tracks.setups);
   });

@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_scenario.h"
+#include "python/binding/given_input.h"
 #include "python/binding/watched_work.h"
 #include "render/film/clip_renderer.h"
 #include "render/film/render_experiment.h"

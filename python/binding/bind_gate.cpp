@@ -8,8 +8,7 @@
 #include <string>
 
 #include "python/binding/bindings.h"
-#include "python/binding/given_estimator.h"
-#include "python/binding/given_scenario.h"
+#include "python/binding/given_input.h"
 #include "python/binding/watched_work.h"
 #include "report/validation/gate_text.h"
 #include "validate/study/baseline/gate.h"

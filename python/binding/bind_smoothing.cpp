@@ -19,7 +19,7 @@
 #include "core/motion/smoothing/noise.h"
 #include "core/motion/smoothing/smoother_list.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "python/binding/watched_work.h"
 #include "report/analysis/note_words.h"
 

@@ -15,8 +15,7 @@
 #include "diagnose/lines/line_model.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_estimator.h"
-#include "python/binding/given_scenario.h"
+#include "python/binding/given_input.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/analysis/analysis_report.h"
@@ -208,7 +207,6 @@ Outcome certify(const std::vector<std::string>& inputs, std::size_t twins, const
 }  // namespace
 
 void bind_studies(py::module_& module) {
-  bind_given_estimator(module);
   module.def("validate", &run_validation);
   module.def("coverage", &measure_coverage);
   module.def("require", &find_requirement);

@@ -11,8 +11,7 @@
 #include "base/math/angles.h"
 #include "core/result/quantity.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_scenario.h"
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 #include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::python {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
+
 #include "render/camera/optics.h"
 #include "render/random/random_numbers.h"
 

@@ -13,14 +13,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
 #include "base/math/simd.h"
 
 namespace glidelab::render {
 
 /// The uses of random numbers, so that no two uses draw the same ones.
 ///
-/// A random word is a function of the seed and of a counter {first, second, third, purpose}. Every
-/// purpose has its own number in the last place; the stream in the third place distinguishes clips and stills.
+/// A random word is a function of the seed and of a counter {first, second, third, purpose}. Every purpose has its own
+/// number in the last place; the stream in the third place distinguishes clips and stills.
 ///
 /// Files of a seed stay the same only as long as these numbers do.
 enum class RandomPurpose : std::uint32_t {

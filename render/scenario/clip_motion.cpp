@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
 #include "base/errors.h"
 
 namespace glidelab::render {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+
 #include "render/scenario/scenario_data.h"
 #include "sim/motion/simulate.h"
 

@@ -5,8 +5,10 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +16,6 @@
 #include "render/camera/camera.h"
 #include "render/camera/frame_clock.h"
 #include "render/camera/optics.h"
-#include "render/camera/shutter.h"
 #include "render/sensor/sensor.h"
 #include "render/video/video_writer.h"
 #include "sim/motion/motion_scenario.h"
@@ -52,10 +53,17 @@ struct Light {
 };
 
 /// At an instant.
-double flicker_at(const Light& light, double t_s);
+inline double flicker_at(const Light& light, double t_s) {
+  return 1.0 +
+         light.flicker_depth * std::cos(2.0 * std::numbers::pi * light.flicker_hz * t_s + light.flicker_phase_rad);
+}
 
 /// The mean over [start_s, start_s + exposure_s].
-double mean_flicker(const Light& light, double start_s, double exposure_s);
+inline double mean_flicker(const Light& light, double start_s, double exposure_s) {
+  const double half_turn = std::numbers::pi * light.flicker_hz * exposure_s;
+  const double sinc = half_turn < 1e-8 ? 1.0 : std::sin(half_turn) / half_turn;
+  return 1.0 + sinc * (flicker_at(light, start_s + 0.5 * exposure_s) - 1.0);
+}
 
 /// How the images are taken: every row is exposed once every 1/rate.
 struct Recording {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result/results.h"
-#include "report/text/found_json.h"
+#include "report/text/json_numbers.h"
 
 namespace glidelab::report {
 

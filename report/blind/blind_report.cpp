@@ -6,7 +6,7 @@
 #include <array>
 
 #include "base/text/number_text.h"
-#include "report/blind/blind_words.h"
+#include "report/blind/blind_run.h"
 #include "report/blind/everyday_report.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"

@@ -8,7 +8,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
-#include "report/blind/blind_words.h"
+#include "report/blind/blind_run.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"

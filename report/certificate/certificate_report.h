@@ -16,7 +16,7 @@ namespace glidelab::report {
 std::string certificate_answer(const validate::Certificate& certificate);
 
 /// At most three that reduce the errors by a tenth or more, the largest gain first: "Use more light. With half the
-/// noise, K/m, µ, α err 45 % (38 to 51 %) less.". Text.
+/// noise, K/m, µ, α err 45 % (38 to 51 %) less". Text.
 std::vector<std::string> best_changes(const validate::Certificate& certificate);
 
 /// The fraction of each quantity's intervals that contain the truth, with its own interval.

@@ -1,4 +1,5 @@
-/// A measured camera as characterize.json, as a table and as a page, and the rows shared by these three.
+/// A measured camera as characterize.json, as a table, as camera.toml and as a page; the rows shared by the table, the
+/// page and the JSON.
 #pragma once
 
 #include <string>
@@ -27,6 +28,15 @@ std::string camera_json(const core::CameraMeasurement& camera);
 
 /// The same as a table for a terminal, with notes and reasons below.
 std::string camera_text(const core::CameraMeasurement& camera);
+
+/// camera.toml: the keys of a scenario's [sensor], each with its standard deviation in a comment. TOML 1.0.
+/// Numbers have no more digits than their standard deviations support.
+///
+/// A number that was not measured but has a limit is written as that limit, so that a rehearsal with the file errs on
+/// the side of caution; the comment says so. A number without a limit is written as nan, which no reader accepts: the
+/// user of the file has to decide. A dark signal that was not measured is left out; at exposures of milliseconds it
+/// does not matter.
+std::string camera_toml(const core::CameraMeasurement& camera);
 
 /// The page of a measured camera, self-contained HTML: its numbers, the photon-transfer diagram, and its notes.
 /// EnvironmentError if gnuplot fails.

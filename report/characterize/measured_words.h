@@ -1,9 +1,10 @@
-/// How a number of a measured camera was found, or why there is none (core/characterize/camera_measurement.h), in
-/// words.
+/// In words: how a number of a measured camera was found, or why there is none, and the notes on how its images were
+/// taken (core/characterize/camera_measurement.h).
 #pragma once
 
 #include <string>
 #include <vector>
+
 #include "core/characterize/camera_measurement.h"
 
 namespace glidelab::report {
@@ -14,10 +15,8 @@ std::string how_words(const core::Measured& measured);
 /// "hidden by the quantisation: less than 0.31 e-"; empty if there is a value.
 std::string why_words(const core::Measured& measured);
 
-/// The notes on how a camera's images were taken (core/characterize/camera_measurement.h) as sentences.
-
+/// A sentence.
 std::string note_words(const core::CameraNote& note);
-
 std::vector<std::string> notes_words(const std::vector<core::CameraNote>& notes);
 
 }  // namespace glidelab::report

@@ -10,9 +10,9 @@
 #include "base/text/readable_text.h"
 #include "core/result/quantity.h"
 #include "report/analysis/doubts.h"
+#include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
-#include "report/text/found_json.h"
 #include "report/text/why_words.h"
 
 namespace glidelab::report {

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "report/diagnosis/cause_waterfall.h"
 #include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/words/diagnosis_words.h"

@@ -13,7 +13,6 @@
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
 #include "report/html/html.h"
-#include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"
 #include "report/requirement/requirement_words.h"
 #include "report/text/display_text.h"

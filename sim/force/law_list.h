@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+
 #include "base/toml/strict_toml.h"
 #include "sim/force/force_law.h"
 
@@ -32,9 +33,8 @@ std::span<const ForceLaw* const> force_laws();
 
 /// A force law from its table in a scenario.
 ///
-/// Reads `law` and the keys of that law from one [[configuration.force]]. A value given over the mass is
-/// multiplied by `mass_kg`. Errors are recorded in the file; the term then holds NaN and must not be used before
-/// finish().
+/// Reads `law` and the keys of that law from one [[configuration.force]]. A value given over the mass is multiplied by
+/// `mass_kg`. Errors are recorded in the file; the term then holds NaN and must not be used before finish().
 std::shared_ptr<const ForceTerm> read_force(const base::TomlTable& table, double mass_kg);
 
 }  // namespace glidelab::sim

@@ -102,7 +102,7 @@ std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m
 ///
 /// and the derivatives by k, d, f, x0, v0 term by term. At v = 0 (closed_forms.h: linear_stop_time_s) it sticks where
 /// |d| <= f, else turns; the derivatives jump as the head of this file says, and go on by the same formulas from (x_T,
-/// 0). All formulas go over into k = 0.
+/// 0). All formulas pass smoothly into k = 0.
 ///
 /// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the glider sticks or
 /// moves with the drive. NumericalError if a number is not finite.

@@ -26,8 +26,8 @@ struct LawAnswers {
 /// std::logic_error if there is none.
 LawAnswers answers_of(const LawStudy& study);
 
-/// The curve with the side of v = 0 on which no motion of the study lies, half as far: without it the jump of
-/// a(v) there cannot be read.
+/// The curve with the side of v = 0 on which no motion of the study lies, half as far: without it the jump of a(v)
+/// there cannot be read.
 LawCurve in_both_directions(LawCurve curve);
 
 }  // namespace glidelab::teach

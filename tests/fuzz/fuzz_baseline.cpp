@@ -1,6 +1,6 @@
 /// The stored errors of an analysis (validate --baseline), compared with themselves once read.
 #include "validate/study/baseline/baseline.h"
-#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/gate.h"
 
 #include "tests/fuzz/fuzz_target.h"
 

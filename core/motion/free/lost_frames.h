@@ -25,7 +25,7 @@
 
 namespace glidelab::core {
 
-inline constexpr int kMostLost = 8;
+inline constexpr int kMostLost = 8;  ///< frames in a row
 
 /// In order of time; none if the frames' times are not uniform to a tenth of a step (time stamps that show gaps are
 /// trusted). `motion` is the track's; single outliers in it are skipped.

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <variant>
 #include <vector>
 
 #include "base/math/angles.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
-#include "core/result/one_direction.h"
 
 namespace glidelab::core {
-
 namespace {
 
 /// A combination of both lines' coefficients: its gradient in one line, and that line.
@@ -137,6 +136,35 @@ MuAndAlpha mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus,
   return found;
 }
 
+namespace {
+
+constexpr double kVertical_deg = 90.0, kClearOfVertical = 5.0;  // standard deviations
+
+bool has_normal_force(const ConfigurationResult& stated, double sd_deg) {
+  return std::abs(stated.incline_deg) + kClearOfVertical * sd_deg < kVertical_deg;
+}
+
+}  // namespace
+
+std::optional<MuOfOneDirection> mu_of_one_direction(const ConfigurationResult& stated, int direction, double a0_m_s2,
+                                                    double gravity_m_s2) {
+  if (stated.incline_assumed || !(stated.incline_sd_deg.value_or(0.0) > 0.0)) return std::nullopt;
+  if (!has_normal_force(stated, *stated.incline_sd_deg)) return std::nullopt;
+  const double alpha = stated.incline_deg * base::kRadPerDegree;
+  const double sine = std::sin(alpha), cosine = std::cos(alpha), over_g = a0_m_s2 / gravity_m_s2;
+  MuOfOneDirection mu;
+  mu.value = direction * (sine - over_g) / cosine;
+  mu.by_a0 = -direction / (gravity_m_s2 * cosine);
+  mu.of_incline = direction * (1.0 - over_g * sine) / (cosine * cosine) * *stated.incline_sd_deg * base::kRadPerDegree;
+  mu.by_gravity = direction * over_g / (gravity_m_s2 * cosine);
+  return mu;
+}
+
+bool incline_would_do(const ConfigurationResult& configuration) {
+  const bool stated = !configuration.incline_assumed && configuration.incline_sd_deg.value_or(0.0) > 0.0;
+  return !stated && has_normal_force(configuration, 0.0);
+}
+
 Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const ConfigurationResult& stated) {
   const double a0 = line.a0_m_s2.value;
   const auto mu = mu_of_one_direction(stated, line.direction, a0, gravity.m_s2);
@@ -147,6 +175,31 @@ Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const Configura
   const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
   const double known = mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
   return determined(estimate(mu->value, random, total - random.value + known), std::sqrt(random.value));
+}
+
+namespace {
+
+template <typename Kind>
+void erase_notes(std::vector<Note>& notes) {
+  std::erase_if(notes, [](const Note& note) { return std::holds_alternative<Kind>(note); });
+}
+
+}  // namespace
+
+void note_mu_from_incline(ConfigurationResult& configuration) {
+  erase_notes<MuFromIncline>(configuration.notes);
+  if (!configuration.mu.estimate || configuration.alpha_deg.estimate || !configuration.incline_sd_deg) return;
+  configuration.notes.emplace_back(MuFromIncline{configuration.incline_deg, *configuration.incline_sd_deg});
+}
+
+void note_gravity(AnalysisResults& results) {
+  for (ConfigurationResult& configuration : results.configurations) erase_notes<GravityAssumed>(configuration.notes);
+  if (results.gravity_sd_m_s2 < kLocalGravity_sd_m_s2) return;  // the place is known
+  for (ConfigurationResult& configuration : results.configurations) {
+    if (!configuration.mu.estimate && !configuration.alpha_deg.estimate) continue;
+    configuration.notes.emplace_back(GravityAssumed{results.gravity_m_s2, results.gravity_sd_m_s2});
+    return;
+  }
 }
 
 }  // namespace glidelab::core

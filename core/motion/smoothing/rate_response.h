@@ -16,7 +16,7 @@
 namespace glidelab::core {
 
 /// Derivatives by k of x, v and a of every node, and of x of every point of the input.
-struct OfRate {
+struct RateResponse {
   std::vector<std::vector<Eigen::Array3d>> nodes;
   std::vector<double> point_gain;  ///< dk / dy of every point: k is the most likely for these positions
 };
@@ -24,7 +24,7 @@ struct OfRate {
 /// k follows the noise of the positions as dk/dy_i = (sd k / s)^2 (dx_i/dk) / f_i^2, because the derivative of -log
 /// likelihood by y is the residual over its variance.
 template <int N>
-OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_variance) {
+RateResponse rate_response(const PartedMotion<N>& motion, const AtTau& at, double noise_variance) {
   constexpr double kStep = 0.5;  // standard deviations
   const MotionParts& parts = motion.parts();
   const double step = kStep * at.rate_sd_1_s;
@@ -33,7 +33,7 @@ OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_vari
   const std::vector<ChainPosterior<N>> below = motion.posteriors(how);
   how.rate_1_s = at.how.rate_1_s + step;
   const std::vector<ChainPosterior<N>> above = motion.posteriors(how);
-  OfRate made;
+  RateResponse made;
   made.point_gain.assign(parts.input.t_s.size(), 0.0);
   std::vector<double> residual(parts.input.t_s.size(), 0.0);
   const double per_point = at.rate_sd_1_s * at.rate_sd_1_s / noise_variance;

@@ -12,6 +12,7 @@
 /// which include what smoothing may remove from a(t).
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -80,6 +81,17 @@ class Smoother {
 struct SeriesPart {
   std::size_t first = 0, count = 0;
 };
-std::vector<SeriesPart> parts_of(const SmoothingInput& input);
+
+inline std::vector<SeriesPart> parts_of(const SmoothingInput& input) {
+  std::vector<SeriesPart> parts;
+  std::size_t first = 0;
+  for (const std::size_t start : input.starts) {
+    assert(start > first && start < input.t_s.size());
+    parts.push_back({first, start - first});
+    first = start;
+  }
+  if (input.t_s.size() > first) parts.push_back({first, input.t_s.size() - first});
+  return parts;
+}
 
 }  // namespace glidelab::core

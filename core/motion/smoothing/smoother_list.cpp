@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <span>
+
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
 #include "core/motion/smoothing/noise.h"
@@ -50,7 +51,7 @@ namespace {
 
 class LocalCubicSmoother final : public Smoother {
  public:
-  std::string_view name() const override { return "local-polynomial"; }
+  std::string_view name() const override { return kLocalPolynomial; }
   std::string_view words() const override { return "local cubic with a Gaussian kernel"; }
   bool takes_bandwidth() const override { return true; }
 

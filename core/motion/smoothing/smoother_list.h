@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 #include "core/motion/smoothing/smoother.h"
 
 namespace glidelab::core {
@@ -14,6 +15,7 @@ std::vector<std::string> smoother_names();
 /// Null if there is none of that name.
 const Smoother* find_smoother(std::string_view name);
 
+/// The default's name, the only one that takes a bandwidth.
 inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
 
 /// InputError for an unknown name, and for a bandwidth, or a rule that chooses one, with a smoother that has none.

@@ -386,7 +386,7 @@ class WienerSmoother final : public Smoother {
     const double variance = by_ == StrengthBy::likelihood || parts.input.noise_sd_m
                                 ? motion.noise_variance(motion.fit(of.at.how))
                                 : sums.noise_variance();
-    const OfRate by = of_rate(motion, of.at, variance);
+    const RateResponse by = rate_response(motion, of.at, variance);
     for (std::size_t p = 0; p < parts.parts.size(); ++p) {
       add_rate(posteriors[p], by.nodes[p], by.point_gain, parts.parts[p], made);
     }

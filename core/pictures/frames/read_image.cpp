@@ -12,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 #include <vector>
+
 #include "base/errors.h"
 #include "base/text/number_text.h"
 

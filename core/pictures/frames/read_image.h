@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+
 #include "core/experiment/permissions.h"
 
 namespace glidelab::core {

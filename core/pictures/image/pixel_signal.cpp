@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 #include <vector>
+
 #include "core/math/quantile.h"
 
 namespace glidelab::core {

@@ -43,8 +43,8 @@ class MarkerTracker {
   /// Measures every object by one method, in place of the one that fits it best.
   void measure_by(MarkerMethod method) { first_method_ = method; }
 
-  /// Limits the memory of windows around sightings; the default is 128 MiB. If any sighting
-  /// has none, all keep the shift by a colour mosaic or a tone curve, and a note says how many have none.
+  /// Limits the memory of windows around sightings; the default is 128 MiB. If any sighting has none, all keep the
+  /// shift by a colour mosaic or a tone curve, and a note says how many have none.
   void limit_windows(std::size_t bytes) { windows_.limit(bytes); }
 
   /// Takes the next frame. InputError if a hue is sought in a grey clip.

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <variant>
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/effects/effect_list.h"
+#include "report/check/finding_words.h"
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/line_words.h"
 #include "report/diagnosis/words/next_step_words.h"
-#include "report/diagnosis/words/unit_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -218,6 +219,48 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   return text + clip_gap_words(diagnosis);
 }
 
+/// A unit that may be wrong, a scale, or a fall that is too slow.
+std::string doubtful_unit_words(const diagnose::DoubtfulUnit& of) {
+  const FindingWords words = finding_words(of.found);
+  if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
+    return fmt::format(
+        "First find out why it falls so slowly ({}: {}). {} Otherwise nothing below holds.", of.clip, words.found,
+        of.weight_open
+            ? "The force that drives it is therefore fitted. If it was at its final speed from the start, terminal "
+              "velocities hold; if a liquid bears part of its weight, K/m holds as well."
+            : "If it was at its final speed from the start, terminal velocities hold. If a liquid bears part of its "
+              "weight, they hold as well, and drags are too large by the ratio of its weight to that in the liquid.");
+  }
+  const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
+  return fmt::format("First {} ({}: {}). {}.", words.advice, of.clip, words.found,
+                     scale ? "Drag and friction cannot explain that" : "In another unit, nothing below holds");
+}
+
+/// A path that turns by less hardly changes gravity along it.
+std::string bent_path_words(const diagnose::OfReading& of) {
+  constexpr double kClearly_deg = 3.0;
+  const auto* const path = std::get_if<core::PathBends>(&of.note);
+  if (path == nullptr || path->slope_deg < kClearly_deg) return {};
+  return fmt::format(
+      "First find out whether the track is straight: in {}, the direction of the path in x and y changes by {:.1f}°. "
+      "On a bent track gravity along the motion changes, and the causes named below may be an effect of that.",
+      of.clip, path->slope_deg);
+}
+
+/// What has to be checked before a diagnosis can be trusted: of the clips that make a unit of lengths or times, or the
+/// scale, doubtful, the first; otherwise of those whose path turns by three degrees or more. Empty if there are none.
+std::string check_first_words(const diagnose::Diagnosis& diagnosis) {
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (const auto* const of = std::get_if<diagnose::DoubtfulUnit>(&note)) return doubtful_unit_words(*of);
+  }
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (const auto* const of = std::get_if<diagnose::OfReading>(&note)) {
+      if (std::string words = bent_path_words(*of); !words.empty()) return words;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
@@ -234,8 +277,8 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
   if (limits.set_aside) text = note_words(*limits.set_aside) + " " + text;
-  const std::string unit = unit_words(diagnosis);
-  return unit.empty() ? text : unit + " " + text;
+  const std::string first = check_first_words(diagnosis);
+  return first.empty() ? text : first + " " + text;
 }
 
 std::string too_few_words(const diagnose::GapIntervals& intervals) {

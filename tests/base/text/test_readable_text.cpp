@@ -4,6 +4,7 @@
 
 #include "tests/catch.h"
 
+using glidelab::base::trimmed;
 using namespace glidelab;
 
 TEST_CASE("text that is not UTF-8 gets a replacement for each wrong byte, and valid text stays") {
@@ -33,4 +34,12 @@ TEST_CASE("a text is cut between two characters") {
   CHECK(base::first_bytes("ab\u20AC", 4) == "ab");  // the third character has three bytes
   CHECK(base::first_bytes("ab\u20AC", 5) == "ab\u20AC");
   CHECK(base::first_bytes("\u20AC", 2).empty());
+}
+
+TEST_CASE("blanks at the ends of a text are left out, and those inside stay") {
+  CHECK(trimmed(" \t a b\r") == "a b");
+  CHECK(trimmed("a") == "a");
+  CHECK(trimmed("").empty());
+  CHECK(trimmed(" \t\r").empty());
+  CHECK(trimmed("\ta ", " ") == "\ta");  // of the blanks that are named alone
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <variant>
+
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
 #include "core/check/recording_findings.h"

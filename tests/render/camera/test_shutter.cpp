@@ -1,4 +1,4 @@
-#include "render/camera/shutter.h"
+#include "render/camera/frame_clock.h"
 
 #include <fmt/format.h>
 

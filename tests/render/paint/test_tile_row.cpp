@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
 #include "render/paint/tile_row.h"
 #include "tests/catch.h"
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
 #include "report/characterize/measured_words.h"
 #include "tests/catch.h"
 

@@ -1,5 +1,4 @@
-/// The errors of replicated tracks of a scenario, stored as a JSON file and compared with later ones
-/// (baseline_comparison.h).
+/// The errors of replicated tracks of a scenario, stored as a JSON file and compared with later ones (gate.h).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,12 @@
 /// The content of a certificate: whether the stated intervals hold in recordings like this one, the error of each
 /// quantity, and what limits it. report/certificate puts it into words, as certify.json and a page.
+///
+/// Its numbers are statistics of grouped values: twins are runs, each with several configurations and quantities. The
+/// values of one run (several intervals that contain the truth, or not) are correlated, because its configurations
+/// share camera and clock. So the interval of a share is that of Clopper and Pearson, with the effective number of
+/// independent values instead of the number of values: n / D, D = (variance of the share from run to run) / (p (1 - p)
+/// / n), at least 1, and n / D is at least 1 as well (Korn and Graubard 1998). If all or none hold, nothing varies, and
+/// each run counts once.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +16,45 @@
 #include <vector>
 
 #include "core/result/why_unknown.h"
-#include "validate/study/certify/run_shares.h"
 
 namespace glidelab::validate {
+
+/// That of the stated intervals, and that with which they are judged.
+inline constexpr double kCertifiedConfidence = 0.95;
+
+/// The number of values that hold in one run.
+struct RunCount {
+  std::size_t holds = 0;
+  std::size_t of = 0;
+};
+
+/// The share over all runs, with its interval.
+struct RunShare {
+  std::size_t holds = 0, of = 0;
+  double share = 0.0;
+  double low = 0.0, high = 1.0;
+};
+
+/// Runs with `of` = 0 do not count; without any runs the share is 0 and the interval 0 to 1.
+RunShare share_of(const std::vector<RunCount>& runs, double confidence);
+
+/// A mean over runs with its standard deviation, which is infinite for a single run.
+struct RunMean {
+  double value = 0.0, sd = 0.0;
+};
+/// The mean from each run's sum and number of values: sum of sums over sum of counts, with the jackknife's standard
+/// deviation.
+RunMean mean_of(const std::vector<double>& sums, const std::vector<double>& counts);
+
+/// The reduction of an rms value: 1 - sqrt(sum after / sum before), from the squares of each run, before and after in
+/// the same runs; the interval by the jackknife of ln(after / before) and Student's t.
+struct RunFall {
+  double value = 0.0;
+  double low = 0.0, high = 0.0;  ///< for the requested confidence
+};
+/// Several quantities have equal weight: the mean of their logarithms. Each has the same runs, two or more (asserted).
+RunFall fall_of(const std::vector<std::vector<double>>& before, const std::vector<std::vector<double>>& after,
+                double confidence);
 
 /// A configuration of the twins.
 struct CertifiedSetup {
@@ -35,7 +78,7 @@ struct CertifiedQuantity {
 
   std::size_t answered() const { return asked - failed; }
   /// Fewer hold than 95 %, by more than chance makes.
-  bool too_narrow() const { return answered() > 0 && wide_coverage.high < 0.95; }
+  bool too_narrow() const { return answered() > 0 && wide_coverage.high < kCertifiedConfidence; }
 };
 
 /// The reduction of one quantity's error by a change.
@@ -78,7 +121,7 @@ struct CertifiedExplanation {
   RunShare coverage;  ///< of K/m, mu and alpha
 
   /// Fewer hold than 95 %, by more than chance makes.
-  bool fails() const { return coverage.of > 0 && coverage.high < 0.95; }
+  bool fails() const { return coverage.of > 0 && coverage.high < kCertifiedConfidence; }
 };
 
 /// Features of the recording that its twins lack, and why.

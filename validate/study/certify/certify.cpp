@@ -31,7 +31,6 @@ constexpr std::size_t kHeadline = 3;  // K/m, mu and alpha: the first of kQuanti
 constexpr std::size_t kFirstFilmed = 5, kMostFilmed = 10;
 constexpr double kFirstShare = 0.2;   // of the error probability of both looks (Bonferroni)
 constexpr double kLeastUseful = 0.1;  // fall of the errors below which a change is not worth a second look
-constexpr double kConfidence = 0.95;
 constexpr double kWideConfidence = 1.0 - 0.01 / static_cast<double>(kQuantityCount);  // Bonferroni
 
 /// One quantity of one configuration in one twin.
@@ -160,7 +159,7 @@ CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
   });
   if (result.answered() == 0) return result;
   const std::vector<RunCount> held = counts_of(outcomes, quantity, 1, configuration);
-  result.coverage = share_of(held, kConfidence);
+  result.coverage = share_of(held, kCertifiedConfidence);
   result.wide_coverage = share_of(held, kWideConfidence);
   result.bias_sds = mean_of(sds, counts);
   result.rms = std::sqrt(square / static_cast<double>(result.answered()));
@@ -282,7 +281,7 @@ std::vector<CertifiedExplanation> explanations_of(const RecordingTwin& twin, con
   for (std::size_t k = 0; k < by.size(); ++k) {
     const TwinExplanation& one = twin.explanations[k];
     if (by[k].empty()) continue;
-    explanations.push_back({one.ids, one.probability / sum, by[k].size(), share_of(by[k], kConfidence)});
+    explanations.push_back({one.ids, one.probability / sum, by[k].size(), share_of(by[k], kCertifiedConfidence)});
   }
   return explanations;
 }
@@ -298,16 +297,16 @@ ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, con
   std::vector<std::pair<std::size_t, Squares>> all;
   for (std::size_t q = 0; q < kQuantityCount; ++q) {
     Squares squares = squares_of(before, after, q);
-    if (!fall_of_all({squares}, kConfidence)) continue;
+    if (!fall_of_all({squares}, kCertifiedConfidence)) continue;
     if (q < kHeadline) headline.push_back(squares);
     all.emplace_back(q, std::move(squares));
   }
   for (const auto& [q, squares] : all) {
-    QuantityFall fall{std::string(core::kQuantities[q].key), *fall_of_all({squares}, kConfidence), false};
+    QuantityFall fall{std::string(core::kQuantities[q].key), *fall_of_all({squares}, kCertifiedConfidence), false};
     fall.significant = fall_of_all({squares}, 1.0 - error_probability / static_cast<double>(all.size()))->low > 0.0;
     result.quantities.push_back(std::move(fall));
   }
-  result.together = fall_of_all(headline, kConfidence);
+  result.together = fall_of_all(headline, kCertifiedConfidence);
   result.stands_out = result.together && fall_of_all(headline, 1.0 - error_probability)->low > 0.0;
   return result;
 }
@@ -362,17 +361,6 @@ void check_runs(std::size_t runs) {
 
 }  // namespace
 
-bool Certificate::holds() const {
-  return !(together.of > 0 && wide_together.high < kConfidence) &&
-         std::none_of(quantities.begin(), quantities.end(),
-                      [](const CertifiedQuantity& quantity) { return quantity.too_narrow(); });
-}
-
-bool Certificate::empty() const {
-  return std::none_of(quantities.begin(), quantities.end(),
-                      [](const CertifiedQuantity& quantity) { return quantity.answered() > 0; });
-}
-
 Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   check_runs(options.runs);
   Certificate certificate;
@@ -399,7 +387,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   const Twins twins{twin, truths_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
   const Outcomes outcomes = record_all(twins, options.runs, done);
   const std::vector<RunCount> held = counts_of(outcomes, 0, kHeadline, std::nullopt);
-  certificate.together = share_of(held, kConfidence);
+  certificate.together = share_of(held, kCertifiedConfidence);
   certificate.wide_together = share_of(held, kWideConfidence);
   certificate.explanations = explanations_of(twin, held, options.seed);
   for (std::size_t q = 0; q < kQuantityCount; ++q) {

@@ -1,7 +1,7 @@
 /// Can the stated intervals be trusted on this recording? Twins of it are recorded, analysed in the same way, and
 /// compared with their truth.
 ///
-/// For n twins, the stated 95 % intervals that contain the truth are counted (run_shares.h). The twin is then changed
+/// For n twins, the stated 95 % intervals that contain the truth are counted (certificate.h). The twin is then changed
 /// in one respect at a time and recorded again with the same seeds: the reduction of the rms error shows what limits
 /// the recording. Filming takes long: of each change five twins are filmed first, and five more where these leave open
 /// whether it helps. Source: Talts et al. 2018, and Sailynoja et al. 2025, who calibrate at the posterior.

@@ -2,6 +2,7 @@
 /// report/requirement puts it into words.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,11 +23,17 @@ inline constexpr std::uint64_t kLeastRendered = 2;
 inline constexpr std::uint64_t kLimitRuns = 4;
 
 /// Numbers of rendered runs after which a point is judged: kLeastRendered, twice that, …, `most`.
-std::vector<std::uint64_t> looks(std::uint64_t most);
+inline std::vector<std::uint64_t> looks(std::uint64_t most) {
+  std::vector<std::uint64_t> sizes = {std::min(kLeastRendered, most)};
+  while (sizes.back() < most) sizes.push_back(std::min(2 * sizes.back(), most));
+  return sizes;
+}
 
 /// Confidence of each limit at one look, such that all looks together err with a probability of at most 1 -
 /// kConfidence.
-double confidence_of_look(std::uint64_t most);
+inline double confidence_of_look(std::uint64_t most) {
+  return 1.0 - (1.0 - kConfidence) / static_cast<double>(looks(most).size());
+}
 
 /// What is about to be rendered. Times are on the requested threads, estimated from one recording.
 struct ConfirmationSize {

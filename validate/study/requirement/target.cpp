@@ -15,7 +15,7 @@
 #include "base/errors.h"
 #include "base/math/distributions.h"
 #include "base/text/nearest_word.h"
-#include "base/text/trimmed.h"
+#include "base/text/readable_text.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"

@@ -4,8 +4,7 @@
 ///
 ///     sd       sqrt(sum e_i² / n): the rms error, including a bias
 ///     error95  the least of the |e_i| that 95 % of them do not exceed: number ceil(0.95 n) of the sorted ones; of
-///     fewer
-///              than 20 errors, which do not know that quantile, 1.96 times their root mean square
+///              fewer than 20 errors, which do not know that quantile, 1.96 times their root mean square
 ///     bias     |sum e_i / n|
 ///
 /// Errors of tracks have heavy tails (a frame lost without a trace), so results for a normal distribution do not apply

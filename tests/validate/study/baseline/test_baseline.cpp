@@ -1,5 +1,5 @@
 #include "validate/study/baseline/baseline.h"
-#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/gate.h"
 
 #include <algorithm>
 #include <cmath>

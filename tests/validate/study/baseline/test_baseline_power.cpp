@@ -1,4 +1,4 @@
-#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/gate.h"
 
 #include <algorithm>
 #include <cmath>

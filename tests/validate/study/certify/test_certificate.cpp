@@ -1,4 +1,4 @@
-#include "validate/study/certify/run_shares.h"
+#include "validate/study/certify/certificate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "validate/study/certify/run_shares.h"
+#include "validate/study/certify/certificate.h"
 
 #include <algorithm>
 #include <cassert>
@@ -86,6 +86,17 @@ RunFall fall_of(const std::vector<std::vector<double>>& before, const std::vecto
   const double value = ratio(runs), sd = jackknife_sd(without);
   const double t = base::student_t_quantile(static_cast<double>(runs) - 1.0, 0.5 * (1.0 + confidence));
   return {-std::expm1(value), -std::expm1(value + t * sd), -std::expm1(value - t * sd)};
+}
+
+bool Certificate::holds() const {
+  return !(together.of > 0 && wide_together.high < kCertifiedConfidence) &&
+         std::none_of(quantities.begin(), quantities.end(),
+                      [](const CertifiedQuantity& quantity) { return quantity.too_narrow(); });
+}
+
+bool Certificate::empty() const {
+  return std::none_of(quantities.begin(), quantities.end(),
+                      [](const CertifiedQuantity& quantity) { return quantity.answered() > 0; });
 }
 
 }  // namespace glidelab::validate

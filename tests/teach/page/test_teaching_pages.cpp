@@ -1,10 +1,14 @@
 #include "teach/page/teaching_pages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <regex>
 
 #include "base/files/file_io.h"
+#include "teach/page/page_texts.h"
+#include "teach/study/phase_explorer.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/report/text_of_pages.h"
@@ -72,11 +76,24 @@ TEST_CASE("the page of laws tells coming to rest from tending to it, and marks w
 
 TEST_CASE("every page that teach can make either reads no file or is among those whose texts are tested here") {
   const std::filesystem::path root = tests::kSourceDir;
-  const std::string here = base::read_file(root / "tests/teach/page/test_laws_report.cpp");
+  const std::string here = base::read_file(root / "tests/teach/page/test_teaching_pages.cpp");
   const std::vector<std::string> pages = tests::pages_of(root / "teach");
   for (const std::string& name : pages) {
     INFO(name);
     CHECK((name == "explorer_page" || has(here, "check_is_text(teach::" + name + "(")));
   }
   CHECK(pages.size() >= 2);
+}
+
+TEST_CASE("the explorer's sliders end where its motions were checked") {
+  const std::string html = teach::explorer_page(teach::PhaseExplorer{}).html;
+  const auto holds = [&](const char* id, double low, double high) {
+    INFO(id);
+    CHECK(html.find(fmt::format("id=\"{}\" min=\"{}\" max=\"{}\"", id, low, high)) != std::string::npos);
+  };
+  holds("k", 0.0, teach::kDragRange.high);  // below its range's low end: no drag
+  holds("mu", teach::kMuRange.low, teach::kMuRange.high);
+  holds("alpha", teach::kInclineRange.low, teach::kInclineRange.high);
+  holds("v0", teach::kStartRange.low, teach::kStartRange.high);
+  holds("t", 0.0, teach::kExplorerTime);
 }

@@ -1,14 +1,16 @@
-#include "python/binding/given_tracks.h"
+#include "python/binding/given_input.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/files/file_io.h"
 #include "base/math/angles.h"
 #include "core/track/bare_track.h"
 
@@ -22,7 +24,8 @@ Vector vector_of(std::span<const double> values) {
 
 namespace {
 
-constexpr double kSteepest_deg = 90.0;  // the limit of experiment.toml
+constexpr double kSteepest_deg = 90.0;   // the limit of experiment.toml
+constexpr double kMegabyte = 1048576.0;  // bytes
 
 constexpr std::array<std::pair<const char*, core::Launched>, 4> kLaunches = {{{"up", core::Launched::up},
                                                                               {"down", core::Launched::down},
@@ -84,7 +87,7 @@ void check_readings(const std::vector<GivenTrack>& given, const std::vector<core
 
 }  // namespace
 
-GivenTracks read_given(std::vector<GivenTrack> given) {
+GivenTracks read_tracks(std::vector<GivenTrack> given) {
   std::vector<base::Issue> issues;
   if (given.empty()) issues.push_back({"", 0, "tracks", "none", "one or more"});
   GivenTracks read;
@@ -122,13 +125,45 @@ core::Gravity read_gravity(const GivenGravity& given) {
   return core::stated_gravity(m_s2, sd_m_s2);
 }
 
-void bind_given_track(py::module_& module) {
+std::string text_of(const GivenScenario& given) {
+  return given.second ? *given.second : base::read_file(given.first);
+}
+
+render::Scenario read_scenario(const GivenScenario& given, render::ScenarioChecks checks) {
+  try {
+    return render::read_scenario(text_of(given), given.first, checks);
+  } catch (const base::InputError& error) {
+    if (!given.second) throw;
+    std::vector<base::Issue> issues = error.issues();
+    for (base::Issue& issue : issues) {
+      if (issue.file == given.first) issue.line = 0;  // a dict has no lines
+    }
+    throw base::InputError(std::move(issues));
+  }
+}
+
+std::optional<fit::OutsideEstimator> outside_of(const std::optional<GivenEstimator>& given,
+                                                const WatchedWork& watched) {
+  if (!given) return std::nullopt;
+  fit::OutsideEstimator made = fit::outside_estimator(given->command, given->name);
+  made.function = given->function;
+  made.limits.wall_s = given->seconds;
+  made.limits.memory_bytes = static_cast<std::uint64_t>(given->megabytes * kMegabyte);
+  made.stop = [&watched] { return watched.stopped(); };
+  return made;
+}
+
+void bind_given_input(py::module_& module) {
   py::class_<GivenTrack>(module, "GivenTrack")
       .def(py::init([](std::string name, const Vector& t_s, const Vector& x_m, const Vector& force_n,
                        std::optional<double> mass_kg, double mass_sd_kg, double incline_deg,
                        std::optional<double> incline_sd_deg, std::string launched, std::string group) {
         return GivenTrack{std::move(name), copy_of(t_s), copy_of(x_m),   copy_of(force_n),    mass_kg,
                           mass_sd_kg,      incline_deg,  incline_sd_deg, std::move(launched), std::move(group)};
+      }));
+  py::class_<GivenEstimator>(module, "EstimatorCommand")
+      .def(py::init([](std::string command, std::string name, std::string function, double seconds, double megabytes) {
+        return GivenEstimator{std::move(command), std::move(name), std::move(function), seconds, megabytes};
       }));
 }
 

@@ -1,4 +1,5 @@
-/// Motions given as arrays, converted for the rooms: what experiment.toml states about a clip, and its x(t).
+/// What Python gives, converted for the rooms: motions as arrays, with what experiment.toml states about a clip;
+/// gravity; a scenario; an outside estimator.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -13,6 +14,9 @@
 #include "core/experiment/clip_setup.h"
 #include "core/experiment/local_gravity.h"
 #include "core/track/track_data.h"
+#include "fit/outside/outside_estimator.h"
+#include "python/binding/watched_work.h"
+#include "render/scenario/scenario.h"
 
 namespace glidelab::python {
 
@@ -46,7 +50,7 @@ struct GivenTracks {
 
 /// InputError for an invalid clip: numbers that do not form a track, an invalid mass, a name used twice, an unknown
 /// word for the launch, readings of one group's inclination that contradict each other.
-GivenTracks read_given(std::vector<GivenTrack> given);
+GivenTracks read_tracks(std::vector<GivenTrack> given);
 
 /// Gravity and its standard deviation as stated; core::stated_gravity() says what is taken where they are not.
 using GivenGravity = std::pair<std::optional<double>, std::optional<double>>;
@@ -54,6 +58,30 @@ using GivenGravity = std::pair<std::optional<double>, std::optional<double>>;
 /// InputError if it is not an acceleration above 0, or if only its standard deviation is stated.
 core::Gravity read_gravity(const GivenGravity& given);
 
-void bind_given_track(pybind11::module_& module);
+/// A scenario: (file, text). Without a text the file is read; with one, into which a dict was converted, `file` is its
+/// name in messages, and a camera file is relative to its folder.
+using GivenScenario = std::pair<std::string, std::optional<std::string>>;
+
+/// InputError as in render::read_scenario().
+render::Scenario read_scenario(const GivenScenario& given, render::ScenarioChecks checks = render::ScenarioChecks::all);
+
+/// Its text.
+std::string text_of(const GivenScenario& given);
+
+/// An outside estimator: a command and its limits.
+struct GivenEstimator {
+  std::string command;
+  std::string name;      ///< empty: from the command
+  std::string function;  ///< that the command calls; empty: none
+  double seconds = 0.0;
+  double megabytes = 0.0;
+};
+
+/// Empty if there is none. An interrupt of the watched work ends the estimator's program. InputError as in
+/// fit::outside_estimator().
+std::optional<fit::OutsideEstimator> outside_of(const std::optional<GivenEstimator>& given, const WatchedWork& watched);
+
+/// glidelab._glidelab.GivenTrack and EstimatorCommand.
+void bind_given_input(pybind11::module_& module);
 
 }  // namespace glidelab::python

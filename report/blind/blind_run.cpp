@@ -1,4 +1,4 @@
-#include "report/blind/blind_words.h"
+#include "report/blind/blind_run.h"
 
 #include <fmt/format.h>
 
