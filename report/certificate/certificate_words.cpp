@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/math/angles.h"
 #include "report/text/display_text.h"
@@ -45,7 +46,7 @@ struct LackWords {
 
 }  // namespace
 
-LimitWords limit_words(const validate::ChangedTwin& changed) {
+LimitWords limit_words(const validate::ChangedTwin& changed, const validate::Certificate& certificate) {
   using validate::TwinLimit;
   switch (changed.limit) {
     case TwinLimit::pixel_noise:
@@ -70,13 +71,29 @@ LimitWords limit_words(const validate::ChangedTwin& changed) {
       return {"rounding", "positions with all their digits", "Export more digits"};
     case TwinLimit::cause:
       return {"a cause that the law lacks", "viscous and Coulomb friction alone", cause_advice(changed.causes)};
-    case TwinLimit::clip_scatter:
-      return {"what differs from clip to clip", "one law for every clip",
-              "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};
+    case TwinLimit::clip_scatter: {
+      constexpr const char* kHow = "the track clean and level, the air still, nothing that touches the glider";
+      if (certificate.clips > 1) {
+        return {"what differs from clip to clip", "one law for every clip",
+                fmt::format("Make the clips alike: {}", kHow)};
+      }
+      if (certificate.motions > 1) {
+        return {"what differs from motion to motion", "one law for every motion",
+                fmt::format("Make the motions alike: {}", kHow)};
+      }
+      return {"what the law leaves unexplained", "the law alone",
+              fmt::format("Find what disturbs the motion: {}", kHow)};
+    }
     case TwinLimit::few_clips:
       return {"few clips", "every clip recorded twice", "Record a second clip of each kind"};
   }
   return {};
+}
+
+std::string clip_words(const validate::Certificate& certificate) {
+  std::string text = fmt::format("{} clip{}", certificate.clips, certificate.clips == 1 ? "" : "s");
+  if (certificate.motions > certificate.clips) text += fmt::format(" with {} motions", certificate.motions);
+  return text;
 }
 
 std::string lack_words(const validate::NotInTwins& lack) {
@@ -85,6 +102,29 @@ std::string lack_words(const validate::NotInTwins& lack) {
 
 std::string unanswered_words(const validate::CertifiedQuantity& quantity) {
   return quantity.why ? why_words(quantity.why) : "none of its clips could be used";
+}
+
+std::string all_lacks(const validate::Certificate& certificate) {
+  if (certificate.without.empty()) return {};
+  std::string lacks;
+  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
+  return fmt::format("The recording has what its twins lack: {}. The answer holds only if this does not matter.",
+                     lacks);
+}
+
+std::string all_unanswered(const validate::Certificate& certificate) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason;
+  for (const validate::CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() > 0) continue;
+    const std::string why = unanswered_words(quantity);
+    auto known = std::ranges::find(by_reason, why, [](const auto& one) { return one.first; });
+    if (known == by_reason.end()) known = by_reason.insert(known, {why, {}});
+    known->second.push_back(symbol_of(quantity.quantity));
+  }
+  std::string text;
+  for (const auto& [why, names] : by_reason)
+    text += fmt::format("{}No twin has a value of {}: {}.", text.empty() ? "" : " ", list_of(names), why);
+  return text;
 }
 
 std::vector<std::string> setup_names(const validate::Certificate& certificate) {
