@@ -16,12 +16,13 @@ add_custom_command(
   VERBATIM)
 add_custom_target(texts ALL DEPENDS ${texts}/glidelab.1.gz ${texts}/glidelab.bash ${texts}/_glidelab)
 
-# The pages for class, which open without a build, are made anew where they lie; a test says when that is due.
+# The pages and worksheets for class, which need no build, are made anew where they lie; a test says when that is due.
 set(class ${CMAKE_CURRENT_SOURCE_DIR}/docs/class)
 add_custom_target(
   class_pages
   COMMAND glidelab explore --quiet --out ${class}
   COMMAND glidelab laws ${CMAKE_CURRENT_SOURCE_DIR}/scenarios/laws --quiet --out ${class}
+  COMMAND glidelab laws ${CMAKE_CURRENT_SOURCE_DIR}/scenarios/laws --worksheet --quiet --out ${class}/worksheets
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${class}/plots
   VERBATIM)
 
@@ -33,7 +34,7 @@ install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/glidelab)
 install(FILES README.md CHANGELOG.md CONVENTIONS.md CONTRIBUTING.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # where Debian looks for it
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg"
-        PATTERN "*.schema.json" PATTERN "*.html")
+        PATTERN "*.schema.json" PATTERN "*.html" PATTERN "*.pdf")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "__pycache__" EXCLUDE)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)

@@ -67,12 +67,16 @@ struct FaultSentence {
                             "give positions along a straight line"};
   }
   FaultWords operator()(const LostInNoise& of) const {
-    return {
-        fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
-                    "motion shows",
-                    of.noise_m, of.distance_m),
-        "see whether the body moved, and whether the tracker or the sensor followed the body; record again with less "
-        "scatter"};
+    return {fmt::format("the positions scatter by {:.2g} m (one standard deviation) over a distance of {:.2g} m: no "
+                        "motion shows",
+                        of.noise_m, of.distance_m),
+            "see whether the tracker or the sensor followed the body; record again with less scatter"};
+  }
+  FaultWords operator()(const AtRest& of) const {
+    return {of.spread_m > 0.0
+                ? fmt::format("nothing moves: the positions scatter by {:.2g} m about one place", of.spread_m)
+                : "nothing moves: all positions are the same",
+            "record a body that moves; if it did move, see whether the tracker or the sensor followed it"};
   }
 };
 

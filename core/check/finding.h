@@ -381,7 +381,12 @@ struct LostInNoise {
   double noise_m = 0.0, distance_m = 0.0;
 };
 
-using MotionFault = std::variant<Oscillation, BeyondGravity, FreeFall, CurvedPath, Counted, LostInNoise>;
+/// The positions scatter about one place.
+struct AtRest {
+  double spread_m = 0.0;  ///< about their mean; 0: all are the same
+};
+
+using MotionFault = std::variant<Oscillation, BeyondGravity, FreeFall, CurvedPath, Counted, LostInNoise, AtRest>;
 
 /// "this is an oscillation, …", and what to do. Worded here because a diagnosis refuses such a motion with these
 /// sentences.

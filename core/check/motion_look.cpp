@@ -217,13 +217,12 @@ double spread_of(std::span<const double> x_m) {
   return std::sqrt((x - x.mean()).square().mean());
 }
 
-/// Whether the positions scatter about one place. A body that covers D at a steady speed has a spread of D/√12 beside
-/// its noise.
-bool rests(const MotionLook& look) {
+}  // namespace
+
+bool is_at_rest(const MotionLook& look) {
+  if (look.positions > 0 && look.distance_m == 0.0) return true;
   return look.positions >= kFewestToRest && look.spread_m > 0.0 && look.spread_m < kSpreadOfRest * look.noise_m;
 }
-
-}  // namespace
 
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced) {
@@ -327,7 +326,8 @@ found::BeyondGravity beyond_gravity(double a, double distance_m, const ClipSetup
 
 }  // namespace
 
-std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2) {
+std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2,
+                                     bool any_moves) {
   std::vector<Finding> findings;
   FindingBook book(findings, {Subject::Part::clips, {setup.name}});
   const double a = look.acceleration_m_s2.value_or(0.0), sure = a - kMedian * look.acceleration_sd_m_s2;
@@ -338,8 +338,8 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   } else if (look.positions >= kFewestToRest && look.noise_m > kLeastLost_m &&
              look.noise_m > kLostInNoise * look.distance_m) {
     book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
-  } else if (rests(look)) {
-    book.add(Severity::change, found::LostInNoise{look.noise_m, look.distance_m});
+  } else if (is_at_rest(look)) {
+    book.add(any_moves ? Severity::change : Severity::unusable, found::AtRest{look.spread_m});
   } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
   } else if (sure > most || look.speeding_up_m_s2 > kFarAboveGravity * gravity_m_s2) {
@@ -361,7 +361,7 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
     book.add(Severity::change, found::Gaps{look.unseen, look.longest_gap_s});
   }
   if (look.bend > kMostBend) book.add(Severity::unusable, found::CurvedPath{look.bend});
-  if (look.smooth && !look.counted) book.add(Severity::change, found::Smoothed{kSmoothPart});
+  if (look.smooth && !look.counted && look.distance_m > 0.0) book.add(Severity::change, found::Smoothed{kSmoothPart});
   return findings;
 }
 
@@ -379,11 +379,13 @@ void note_no_runs(AnalysisResults& results) {
         const auto* const fault = std::get_if<found::MotionFault>(&finding.found);
         if (fault == nullptr ||
             !(std::holds_alternative<found::Oscillation>(*fault) || std::holds_alternative<found::CurvedPath>(*fault) ||
-              std::holds_alternative<found::Counted>(*fault) || std::holds_alternative<found::LostInNoise>(*fault))) {
+              std::holds_alternative<found::Counted>(*fault) || std::holds_alternative<found::LostInNoise>(*fault) ||
+              std::holds_alternative<found::AtRest>(*fault))) {
           continue;
         }
         found::FaultWords words = found::fault_words(*fault);
-        clip.notes.emplace_back(NoRun{std::move(words.found), std::move(words.advice)});
+        clip.notes.emplace_back(
+            NoRun{std::move(words.found), std::move(words.advice), std::holds_alternative<found::AtRest>(*fault)});
       }
     }
   }

@@ -254,11 +254,13 @@ bool is_playback(double file_hz, double stated_hz) {
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings = statement_findings(experiment, check);
   if (check.pattern) judge_pattern(*check.pattern, {findings, {Subject::Part::pattern}});
+  const bool any_moves =
+      !std::ranges::all_of(check.clips, [](const ClipCheck& clip) { return is_at_rest(clip.motion); });
   for (const ClipCheck& clip : check.clips) {
     // A wrong unit or a motion that is none explains what else is found.
     for (const ClipSetup& setup : experiment.clips) {
       if (setup.name != clip.name) continue;
-      for (Finding& finding : motion_findings(clip.motion, setup, experiment.gravity_m_s2)) {
+      for (Finding& finding : motion_findings(clip.motion, setup, experiment.gravity_m_s2, any_moves)) {
         findings.push_back(std::move(finding));
       }
     }

@@ -9,6 +9,7 @@ Note& Note::operator=(Note&&) noexcept = default;
 Note::~Note() = default;
 
 bool is_of_reading(const Note& note) {
+  if (const auto* const no_run = std::get_if<NoRun>(&note)) return no_run->at_rest;
   return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<PositionsAstray>(note) ||
          std::holds_alternative<ColumnsGuessed>(note) || std::holds_alternative<PathBends>(note) ||
          std::holds_alternative<OtherAxisUnused>(note) || std::holds_alternative<RepeatsLeftOut>(note) ||

@@ -412,6 +412,7 @@ struct MuFromIncline {
 /// A motion that is no run along an incline: what it is, and what to do (core/check/finding.h, fault_words()).
 struct NoRun {
   std::string found, advice;
+  bool at_rest = false;  ///< nothing moves: no law is in doubt
 };
 
 /// Falls at a constant speed, which is taken for the terminal velocity (core/motion/steady_fall.h).

@@ -209,9 +209,10 @@ struct LikelyTwin {
   double drag = 0.0;        ///< relative sd from clip to clip of K
 };
 
-/// Positions of one clip as the analysis has them, for the comparison with a twin.
+/// Positions of one motion as the analysis has them, for the comparison with a twin.
 struct MeasuredMotion {
-  std::string clip;
+  std::string clip;          ///< of the twin
+  std::size_t recorded = 0;  ///< clip of the results of the analysis
   double start_s = 0.0;      ///< of the twin's clip, after the data's first frame
   double noise_m = 0.0;      ///< of one position
   double bandwidth_s = 0.0;  ///< of the analysis's smoothing

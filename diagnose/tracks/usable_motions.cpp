@@ -66,6 +66,9 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
                                          const std::vector<core::ClipSetup>& setups) {
   std::vector<base::Issue> issues;
   std::vector<DoubtfulUnit> doubtful;
+  std::vector<core::MotionLook> looks;
+  for (const core::ClipResult& clip : results.clips) looks.push_back(core::look_at_motion(clip));
+  const bool any_moves = !std::ranges::all_of(looks, core::is_at_rest);
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];
     if (clip.images && clip.images->combs > core::kInterlacedShare) {
@@ -77,8 +80,7 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
                "a frame of each field (ffmpeg -vf bwdif) and frame_rate_hz = {:.6g}, or a film without interlacing",
                2.0 * clip.frame_rate_hz)});
     }
-    for (const core::Finding& finding :
-         core::motion_findings(core::look_at_motion(clip), setups[c], results.gravity_m_s2)) {
+    for (const core::Finding& finding : core::motion_findings(looks[c], setups[c], results.gravity_m_s2, any_moves)) {
       if (is_of_units(finding.found)) doubtful.push_back({clip.name, finding.found});
       const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
       if (fault == nullptr || finding.severity != core::Severity::unusable) continue;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "base/math/angles.h"
 #include "diagnose/effects/effect_library.h"
@@ -193,7 +192,7 @@ double incline_deg(double alpha_rad) {
 }
 
 std::string configuration(const TrackSet& set, const MotionFit& fit, const Place& place,
-                          const std::vector<std::size_t>& motions, const std::vector<std::string>& names, double from_m,
+                          const std::vector<std::size_t>& motions, const std::vector<TwinClip>& clips, double from_m,
                           double readout_s) {
   const TrackGroup& group = set.groups[place.group];
   const TrackModel model = model_of(set, *fit.layout, fit.at, motions.front());
@@ -215,7 +214,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
     text += fmt::format(
         "[[configuration.clip]]\nname = \"{}\"\nlaunched = \"{}\"\nx0_m = {:.12g}\nv0_m_s = {:.12g}\nduration_s = "
         "{:.9g}\n",
-        names[motion.clip],
+        clips[i].name,
         own[1] < 0.0   ? "up"
         : own[1] > 0.0 ? "down"
                        : "released",
@@ -224,27 +223,40 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
   return text;
 }
 
-std::vector<std::string> clip_names_of(const TrackSet& set) {
+/// A clip of the twin for each motion, in the order of the motions.
+std::vector<TwinClip> clips_of(const TrackSet& set) {
   std::vector<std::string> names;
   for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
-  return twin_clip_names(names);
+  names = twin_clip_names(names);
+  std::vector<TwinClip> clips;
+  std::vector<std::size_t> motions(set.clips.size(), 0);  // of each clip, so far
+  std::vector<std::string> all = names;
+  std::vector<std::size_t> place;  // of each clip's name in `all`
+  for (const TrackedMotion& motion : set.motions) {
+    const std::size_t number = ++motions[motion.clip];
+    place.push_back(number == 1 ? motion.clip : all.size());
+    if (number > 1) all.push_back(fmt::format("{}-motion-{}", names[motion.clip], number));
+  }
+  all = twin_clip_names(all);
+  for (std::size_t i = 0; i < place.size(); ++i) clips.push_back({i, all[place[i]]});
+  return clips;
 }
 
 /// The differences between the data and the twin's file, apart from the camera: a scenario has one frame rate, and a
 /// clip one motion.
-std::vector<std::string> assumed_of_clips(const TrackSet& set, const Twin& twin, double rate_hz) {
+std::vector<std::string> assumed_of_clips(const TrackSet& set, double rate_hz) {
   std::vector<std::string> assumed;
   const bool rates = std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {
     return set.clips[motion.clip].frame_rate_hz != rate_hz;
   });
   if (rates) assumed.push_back(fmt::format("{:.6g} frames a second, the first clip's, for all clips", rate_hz));
-  for (const auto& [clip, start_s] : twin.clips) {
-    const auto motions = std::count_if(set.motions.begin(), set.motions.end(),
-                                       [of = clip](const TrackedMotion& motion) { return motion.clip == of; });
-    if (motions > 1) {
-      assumed.push_back(
-          fmt::format("only the first of clip {}'s stretches of motion, of {}", clip_names_of(set)[clip], motions));
-    }
+  std::vector<std::size_t> motions(set.clips.size(), 0);
+  for (const TrackedMotion& motion : set.motions) ++motions[motion.clip];
+  if (std::ranges::any_of(motions, [](std::size_t of_clip) { return of_clip > 1; })) {
+    assumed.push_back(
+        fmt::format("a clip for each of the {} motions, without what lies between those of one clip of "
+                    "the data",
+                    set.motions.size()));
   }
   return assumed;
 }
@@ -274,17 +286,15 @@ Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<Diagno
   Twin twin;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   std::map<Place, std::vector<std::size_t>> places;
-  std::set<std::size_t> clips;  // one motion of each: a scenario's clip begins with its motion
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];
     for (const double x : motion.x_m) {
       low = std::min(low, x);
       high = std::max(high, x);
     }
-    if (!clips.insert(motion.clip).second) continue;
     places[{motion.group, motion.mass}].push_back(i);
-    twin.clips.emplace_back(motion.clip, motion.t_s.front());
   }
+  twin.clips = clips_of(set);
   const double rate_hz = set.clips[set.motions.front().clip].frame_rate_hz;
   const TrackModel first = model_of(set, *fit.layout, fit.at, places.begin()->second.front());
   twin.from_m = 0.5 * (low + high);
@@ -293,16 +303,15 @@ Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<Diagno
   twin.lacks = lacks_of_forces(set, first, effects, nameless);
   twin.lacks.insert(twin.lacks.end(), seen.lacks.begin(), seen.lacks.end());
 
-  std::vector<std::string> assumed = assumed_of_clips(set, twin, rate_hz);
+  std::vector<std::string> assumed = assumed_of_clips(set, rate_hz);
   assumed.insert(assumed.end(), view.assumed.begin(), view.assumed.end());
   twin.toml = head(twin, assumed, seen.notes);
   twin.toml += fmt::format(
       "format = 1\nname = \"twin\"\ngravity_m_s2 = {:.9g}\n\n[camera]\nframe_rate_hz = {:.9g}\nexposure_s = {:.9g}\n",
       first.gravity_m_s2, rate_hz, seen.exposure_s);
   twin.toml += camera_keys(filming, view) + seen.sections + scene_sections(filming, view);
-  const std::vector<std::string> names = clip_names_of(set);
   for (const auto& [place, motions] : places) {
-    twin.toml += configuration(set, fit, place, motions, names, twin.from_m, seen.readout_s);
+    twin.toml += configuration(set, fit, place, motions, twin.clips, twin.from_m, seen.readout_s);
   }
   return twin;
 }

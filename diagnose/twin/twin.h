@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
@@ -33,17 +32,23 @@ TwinEffects effects_of_camera(const std::vector<DiagnosedEffect>& effects, const
 /// How the scenario begins.
 inline constexpr std::string_view kTwinHead = "# Made by glidelab diagnose --twin";
 
+/// One clip of a twin: it begins with a motion of the data, and has no other.
+struct TwinClip {
+  std::size_t motion = 0;  ///< index in TrackSet::motions
+  std::string name;        ///< in the scenario: the data's clip, "cart"; its second motion is "cart-motion-2"
+};
+
 struct Twin {
   std::string toml;
   std::vector<TwinLack> lacks;
   double from_m = 0.0;  ///< x of the data where the twin's x is 0
-  /// Clips that the twin has, as indices in TrackSet::clips, and when each begins after its first frame.
-  std::vector<std::pair<std::size_t, double>> clips;
+  std::vector<TwinClip> clips;
 };
 
 /// The twin of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
 ///
-/// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
+/// Configurations are the fitted masses on the fitted inclinations, forces the fitted ones. Each motion is a clip, from
+/// its fitted start: of a cart that bounces, every flight.
 /// Each effect says which force of a scenario it is (diagnose/effects/effect.h), or that no scenario can express it.
 /// Additional inertia becomes a factor m/(m + m_w) on all forces, gravity included, so that m dv/dt is the same. Camera
 /// and clock are those of effects_of_camera(). A scenario has no forces that depend on position or time, and no

@@ -42,19 +42,17 @@ const MotionFit& best_fit(const Comparison& comparison) {
   return comparison.fits[static_cast<std::size_t>(std::max(0, comparison.all.front().fit))];
 }
 
-/// Adds the speeds and accelerations that the analysis found in the same clips.
+/// Adds the speeds and accelerations that the analysis found in the same motions: all of a clip that has one motion.
 void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion>& measured) {
-  std::vector<std::string> names;
-  for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
-  names = twin_clip_names(names);
+  std::vector<std::size_t> motions(results.clips.size(), 0);
+  for (const MeasuredMotion& one : measured) ++motions[one.recorded];
   for (MeasuredMotion& one : measured) {
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      if (names[c] != one.clip) continue;
-      for (const core::MotionPoint& point : results.clips[c].motion) {
-        if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
-        one.v_m_s.push_back(point.v_m_s);
-        one.a_m_s2.push_back(point.a_m_s2);
-      }
+    for (const core::MotionPoint& point : results.clips[one.recorded].motion) {
+      if (!point.smoothed || point.left_out != core::LeftOut::used || one.t_s.empty()) continue;
+      const bool within = one.t_s.front() <= point.t_s && point.t_s <= one.t_s.back();
+      if (motions[one.recorded] > 1 && !within) continue;
+      one.v_m_s.push_back(point.v_m_s);
+      one.a_m_s2.push_back(point.a_m_s2);
     }
   }
 }

@@ -40,13 +40,18 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
   if (points_of(set) >= fewest) return;
   std::vector<std::size_t> of_clip(set.clips.size(), 0);
   for (const TrackedMotion& motion : set.motions) of_clip[motion.clip] += motion.t_s.size();
+  // Without any motion the number of parameters means nothing: there is nothing to fit.
+  const std::string expected =
+      set.motions.empty()
+          ? "a body that moves freely in one of the clips at least"
+          : fmt::format("at least {} positions in all clips together: the model has {} parameters", fewest, parameters);
   std::vector<base::Issue> issues;
   for (std::size_t c = 0; c < of_clip.size(); ++c) {
     issues.push_back(
         {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
          fmt::format("clip \"{}\"", set.clips[c].name),
          of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
-         fmt::format("at least {} positions in all clips together: the model has {} parameters", fewest, parameters)});
+         expected});
   }
   throw base::InputError(std::move(issues));
 }

@@ -135,24 +135,21 @@ std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
   return named;
 }
 
-/// The measured motions of the clips that the twin repeats, from the start of their first motion.
+/// The measured motions, each under the name of its clip in the twin.
 std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
-  std::vector<std::string> names;
-  for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
-  names = twin_clip_names(names);
   std::vector<MeasuredMotion> measured;
-  for (const auto& [clip, start_s] : twin.clips) {
-    const auto motion = std::find_if(set.motions.begin(), set.motions.end(),
-                                     [&, at = clip](const TrackedMotion& one) { return one.clip == at; });
+  for (const TwinClip& clip : twin.clips) {
+    const TrackedMotion& motion = set.motions[clip.motion];
     MeasuredMotion& one = measured.emplace_back();
-    one.clip = names[clip];
-    one.start_s = start_s;
-    one.noise_m = motion->sd_m;
-    one.bandwidth_s = set.clips[clip].bandwidth_s;
-    for (std::size_t p = 0; p < motion->t_s.size(); ++p) {
-      if (motion->outlier[p]) continue;
-      one.t_s.push_back(motion->t_s[p]);
-      one.x_m.push_back(motion->x_m[p]);
+    one.clip = clip.name;
+    one.recorded = set.pieces ? 0 : motion.clip;
+    one.start_s = motion.t_s.front();
+    one.noise_m = motion.sd_m;
+    one.bandwidth_s = set.clips[motion.clip].bandwidth_s;
+    for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
+      if (motion.outlier[p]) continue;
+      one.t_s.push_back(motion.t_s[p]);
+      one.x_m.push_back(motion.x_m[p]);
     }
   }
   return measured;

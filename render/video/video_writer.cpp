@@ -86,6 +86,17 @@ namespace {
 
 // Ticks per second of the stamps of a clip with a variable rate: MPEG's clock. Matroska rounds them to 1 ms.
 constexpr int kStampClock = 90'000;
+constexpr double kMatroskaTick_s = 1e-3;
+
+}  // namespace
+
+double stored_stamp_s(double t_s, Codec codec, const Compression& compression) {
+  const double stamp_s = std::round(t_s * kStampClock) / kStampClock;
+  const bool in_matroska = compression.container.value_or(usual_container(codec)) == Container::mkv;
+  return in_matroska ? kMatroskaTick_s * std::round(stamp_s / kMatroskaTick_s) : stamp_s;
+}
+
+namespace {
 
 /// Throws for a negative result of libav, with the path and the attempted action.
 void check(int result, const std::filesystem::path& path, const char* what) {

@@ -47,6 +47,10 @@ Container usual_container(Codec codec);
 /// Whether it can hold clips of this codec.
 bool fits(Codec codec, Container container);
 
+/// A frame's time stamp as it stands in the file of a clip of variable rate: in whole ticks, of 1 ms in Matroska and of
+/// 1/90000 s in MP4.
+double stored_stamp_s(double t_s, Codec codec, const Compression& compression);
+
 /// The name of a clip with this codec: "m1-up.mkv", "m1-up.avi", "m1-up" (a folder).
 std::string file_name_of(Codec codec, const Compression& compression, const std::string& clip);
 std::string file_name_of(Codec codec, const std::string& clip);

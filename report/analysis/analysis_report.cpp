@@ -124,6 +124,11 @@ std::string fits_sentence(const core::AnalysisResults& results) {
 }  // namespace
 
 std::string meaning_of(const core::AnalysisResults& results) {
+  if (nothing_moves(results)) {
+    return meaning_section(
+        "<p class=\"note\"><b>Nothing moves in this recording.</b> K/m, µ, α and the terminal velocity are those of a "
+        "motion: record a body that moves, or see whether the tracker or the sensor followed it.</p>\n");
+  }
   std::string text;
   const std::vector<std::string> doubts = doubts_about(results);
   if (doubts.empty()) {
@@ -176,6 +181,8 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
     const std::string words = value_words(results, which);
     if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
   }
+  if (nothing_moves(results))
+    return "Nothing moves in this recording: K/m, µ, α and the terminal velocity are those of a motion.";
   if (values.empty())
     return "The data determine none of K/m, µ, α or the terminal velocity; the reasons are below the table.";
   const std::string_view doubted = doubts_about(results).empty() ? "" : doubt;

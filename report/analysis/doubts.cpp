@@ -46,18 +46,28 @@ double longest_range_m(const core::AnalysisResults& results, const core::Configu
 }
 
 /// "run 2: the motion turns 4 times, …": of the first clip of a configuration that is no run along an incline; empty if
-/// all are.
+/// all are, or rest: a law that nothing follows is not in doubt.
 std::string no_run_words(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
   for (const core::ClipResult& clip : results.clips) {
     if (!std::ranges::count(configuration.clips, clip.name)) continue;
     for (const core::Note& note : clip.notes) {
-      if (std::holds_alternative<core::NoRun>(note)) return fmt::format("{}: {}.", clip.name, note_words(note));
+      const auto* const no_run = std::get_if<core::NoRun>(&note);
+      if (no_run != nullptr && !no_run->at_rest) return fmt::format("{}: {}.", clip.name, note_words(note));
     }
   }
   return {};
 }
 
 }  // namespace
+
+bool nothing_moves(const core::AnalysisResults& results) {
+  return !results.clips.empty() && std::ranges::all_of(results.clips, [](const core::ClipResult& clip) {
+    return std::ranges::any_of(clip.notes, [](const core::Note& note) {
+      const auto* const no_run = std::get_if<core::NoRun>(&note);
+      return no_run != nullptr && no_run->at_rest;
+    });
+  });
+}
 
 bool is_below_zero(const core::Estimate& of) {
   return of.value < -kLeastDoubtSds * of.sd && of.high95 < 0.0;

@@ -15,6 +15,9 @@ namespace glidelab::report {
 /// sentence each, plain text; none if the law fits.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
+/// Whether the body rests in every clip: the law is then not in doubt, and has no values.
+bool nothing_moves(const core::AnalysisResults& results);
+
 inline constexpr double kLeastDoubtSds = 2.0;  ///< standard deviations: happens by chance in one of forty
 
 /// By kLeastDoubtSds, and with all of the 95 % interval: a standard deviation from two clips is itself hardly known.

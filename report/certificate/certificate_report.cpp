@@ -93,8 +93,8 @@ std::vector<std::string> change_cells(const Certificate& certificate, const Chan
   return cells;
 }
 
-std::string change_name(const ChangedTwin& change) {
-  const LimitWords words = limit_words(change);
+std::string change_name(const Certificate& certificate, const ChangedTwin& change) {
+  const LimitWords words = limit_words(change, certificate);
   return fmt::format("{}: {}", words.limit, words.change);
 }
 
@@ -109,7 +109,7 @@ bool helps(const ChangedTwin& change) {
 std::string limits_words(const Certificate& certificate) {
   std::string names;
   for (const ChangedTwin& change : certificate.changes) {
-    if (helps(change)) names += (names.empty() ? "" : ", ") + limit_words(change).limit;
+    if (helps(change)) names += (names.empty() ? "" : ", ") + limit_words(change, certificate).limit;
   }
   return names.empty() ? kNothingStandsOut : fmt::format("What limits it, the largest first: {}.", names);
 }
@@ -138,15 +138,6 @@ std::string explanation_words(const Certificate& certificate) {
                         whole_percent(failing));
   return fmt::format("They fail under {}, above all under {} ({} % hold).", which, explanation_name(*worst),
                      whole_percent(worst->coverage.share));
-}
-
-/// "The twins leave out …, unlike the recording."; empty if nothing is missing.
-std::string all_lacks(const Certificate& certificate) {
-  if (certificate.without.empty()) return {};
-  std::string lacks;
-  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
-  return fmt::format("The recording has what its twins lack: {}. The answer holds only if this does not matter.",
-                     lacks);
 }
 
 /// "the terminal velocity", "µ": within a sentence.
@@ -222,7 +213,7 @@ std::vector<std::string> best_changes(const Certificate& certificate) {
   std::vector<std::string> words;
   for (const ChangedTwin& change : certificate.changes) {
     if (!helps(change) || words.size() == kMostChanges) continue;
-    const LimitWords limit = limit_words(change);
+    const LimitWords limit = limit_words(change, certificate);
     words.push_back(fmt::format("{}. With {}, the errors of {} are {} smaller{}.", limit.advice, limit.change,
                                 headline_names(certificate), fall_text(*change.together),
                                 worse_words(certificate, change)));
@@ -286,8 +277,8 @@ Json fall_json(const validate::RunFall& fall) {
   return Json{{"value", fall.value}, {"interval95", {fall.low, fall.high}}};
 }
 
-Json change_json(const ChangedTwin& change) {
-  const LimitWords words = limit_words(change);
+Json change_json(const Certificate& certificate, const ChangedTwin& change) {
+  const LimitWords words = limit_words(change, certificate);
   Json object{{"limit", words.limit}, {"change", words.change}, {"advice", words.advice}, {"twins", change.runs}};
   if (change.together) {
     object["fall"] = fall_json(*change.together);
@@ -313,6 +304,7 @@ std::string certificate_json(const Certificate& certificate) {
   document["holds"] = certificate.empty() ? Json(nullptr) : Json(certificate.holds());
   document["twins"] = certificate.runs;
   document["clips"] = certificate.clips;
+  document["motions"] = std::max(certificate.clips, certificate.motions);
   document["estimator"] = certificate.estimator;
   document["by"] = certificate.filmed ? "film" : "tracks";
   document["together"] = share_json(certificate.together);
@@ -331,7 +323,7 @@ std::string certificate_json(const Certificate& certificate) {
                                         {"coverage", share_json(one.coverage)}});
   }
   document["changes"] = Json::array();
-  for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(change));
+  for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(certificate, change));
   document["causes"] = certificate.causes;
   document["not_in_the_twins"] = Json::array();
   for (const validate::NotInTwins& lack : certificate.without) document["not_in_the_twins"].push_back(lack_words(lack));
@@ -354,9 +346,9 @@ std::string certificate_text(const Certificate& certificate) {
     changes.front().push_back(symbol_of(quantity.quantity));
   }
   text += text_table(rows, 1);
-  if (const std::string none = unanswered_sentence(certificate); !none.empty()) text += "\n" + none + "\n";
+  if (const std::string none = all_unanswered(certificate); !none.empty()) text += base::printable_text(none) + "\n";
   for (const ChangedTwin& change : certificate.changes) {
-    changes.push_back({change_name(change)});
+    changes.push_back({change_name(certificate, change)});
     for (std::string& cell : change_cells(certificate, change)) changes.back().push_back(std::move(cell));
   }
   text += "\n" + text_table(changes, 1) + "\n" + limits_words(certificate) + "\n";
@@ -393,7 +385,7 @@ std::string limits_table(const Certificate& certificate) {
   table.stack_when_narrow(1);
   for (const ChangedTwin& change : certificate.changes) {
     const std::string together = change.together ? fall_text(*change.together) : "–";
-    std::vector<std::string> cells = {escape(change_name(change)),
+    std::vector<std::string> cells = {escape(change_name(certificate, change)),
                                       change.stands_out ? "<b>" + together + "</b>" : together};
     for (std::string& cell : change_cells(certificate, change)) cells.push_back(std::move(cell));
     table.row(cells);
@@ -465,7 +457,7 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
     table.row(cells);
   }
   if (!table.empty()) body += table.str();
-  if (const std::string none = unanswered_sentence(certificate); !none.empty())
+  if (const std::string none = all_unanswered(certificate); !none.empty())
     body += fmt::format("<p class=\"soft\">{}</p>\n", escape(none));
   if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   body += changes_html(certificate);

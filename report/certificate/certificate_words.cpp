@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/math/angles.h"
 #include "base/text/number_text.h"
@@ -83,7 +84,7 @@ bool makes_worse(const validate::QuantityFall& one) {
   return one.fall.high < 0.0 && one.fall.value < -kWorthTelling;
 }
 
-LimitWords limit_words(const validate::ChangedTwin& changed) {
+LimitWords limit_words(const validate::ChangedTwin& changed, const validate::Certificate& certificate) {
   using validate::TwinLimit;
   switch (changed.limit) {
     case TwinLimit::pixel_noise:
@@ -109,13 +110,29 @@ LimitWords limit_words(const validate::ChangedTwin& changed) {
     case TwinLimit::cause:
       return {changed.causes.size() > 1 ? "causes that the law lacks" : "a cause that the law lacks",
               "viscous and Coulomb friction alone", cause_advice(changed)};
-    case TwinLimit::clip_scatter:
-      return {"what differs from clip to clip", "one law for every clip",
-              "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};
+    case TwinLimit::clip_scatter: {
+      constexpr const char* kHow = "the track clean and level, the air still, nothing that touches the glider";
+      if (certificate.clips > 1) {
+        return {"what differs from clip to clip", "one law for every clip",
+                fmt::format("Make the clips alike: {}", kHow)};
+      }
+      if (certificate.motions > 1) {
+        return {"what differs from motion to motion", "one law for every motion",
+                fmt::format("Make the motions alike: {}", kHow)};
+      }
+      return {"what the law leaves unexplained", "the law alone",
+              fmt::format("Find what disturbs the motion: {}", kHow)};
+    }
     case TwinLimit::few_clips:
       return {"few clips", "every clip recorded twice", "Record a second clip of each kind"};
   }
   return {};
+}
+
+std::string clip_words(const validate::Certificate& certificate) {
+  std::string text = fmt::format("{} clip{}", certificate.clips, certificate.clips == 1 ? "" : "s");
+  if (certificate.motions > certificate.clips) text += fmt::format(" with {} motions", certificate.motions);
+  return text;
 }
 
 std::string lack_words(const validate::NotInTwins& lack) {
@@ -126,22 +143,37 @@ std::string unanswered_words(const validate::CertifiedQuantity& quantity) {
   return quantity.why ? why_words(quantity.why) : "none of its clips could be used";
 }
 
-std::string unanswered_sentence(const validate::Certificate& certificate) {
-  std::vector<std::string> names;
+std::string all_lacks(const validate::Certificate& certificate) {
+  if (certificate.without.empty()) return {};
+  std::string lacks;
+  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
+  return fmt::format("The recording has what its twins lack: {}. The answer holds only if this does not matter.",
+                     lacks);
+}
+
+std::string all_unanswered(const validate::Certificate& certificate) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason;
   for (const validate::CertifiedQuantity& quantity : certificate.quantities) {
     if (quantity.answered() > 0) continue;
-    names.push_back(fmt::format("{} ({})", symbol_of(quantity.quantity), unanswered_words(quantity)));
+    const std::string why = unanswered_words(quantity);
+    auto known = std::ranges::find(by_reason, why, [](const auto& one) { return one.first; });
+    if (known == by_reason.end()) known = by_reason.insert(known, {why, {}});
+    known->second.push_back(symbol_of(quantity.quantity));
   }
-  return names.empty() ? std::string() : fmt::format("No twin gives {}.", list_of(names, " or "));
+  std::string text;
+  for (const auto& [why, names] : by_reason)
+    text += fmt::format("{}No twin has a value of {}: {}.", text.empty() ? "" : " ", list_of(names), why);
+  return text;
 }
 
 std::string twin_words(const validate::Certificate& certificate) {
-  std::string text = fmt::format(
-      "{} twins of this recording ({} clip{}), {}, were analysed with the {}. They repeat the fitted motions",
-      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
-                         : "simulated at its frame times with its noise and rounding",
-      estimator_name(certificate.estimator));
+  std::string text =
+      fmt::format("{} twins of this recording ({}), {}, were analysed with the {}. They repeat the fitted motions{}",
+                  certificate.runs, clip_words(certificate),
+                  certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
+                                     : "simulated at its frame times with its noise and rounding",
+                  estimator_name(certificate.estimator),
+                  certificate.motions > certificate.clips ? ", each as a clip of its own" : "");
   std::vector<std::string> names;
   for (const std::string& cause : certificate.causes) names.push_back(effect_name(cause));
   const std::string causes = list_of(names);
@@ -149,7 +181,7 @@ std::string twin_words(const validate::Certificate& certificate) {
   if (certificate.explanations.size() > 1)
     text += " Each likely explanation is used for a share of the twins equal to its probability.";
   if (!certificate.filmed)
-    text += " What an explanation leaves unexplained in each clip is in the twins as well, drawn afresh for each.";
+    text += " What an explanation leaves unexplained in each motion is in the twins as well, drawn afresh for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
   return text;

@@ -29,16 +29,22 @@ struct LimitWords {
   std::string change;  ///< what its twins have instead: "half the noise of each pixel"
   std::string advice;  ///< what the user can do, without a full stop: "Use a larger marker"
 };
-LimitWords limit_words(const validate::ChangedTwin& changed);
+LimitWords limit_words(const validate::ChangedTwin& changed, const validate::Certificate& certificate);
+
+/// "4 clips", "1 clip with 11 motions": of the recording.
+std::string clip_words(const validate::Certificate& certificate);
 
 /// What the twins lack, with the reason in brackets: "track bow (…)". Text.
 std::string lack_words(const validate::NotInTwins& lack);
 
+/// "The recording has what its twins lack: …"; empty if nothing is missing. Text.
+std::string all_lacks(const validate::Certificate& certificate);
+
+/// "No twin has a value of µ and α: …", for each quantity without any; empty if there is none. Text.
+std::string all_unanswered(const validate::Certificate& certificate);
+
 /// Why no twin has an estimate of the quantity. Text.
 std::string unanswered_words(const validate::CertifiedQuantity& quantity);
-
-/// "No twin gives µ (no line for v > 0) or α (…)."; empty if each counted quantity has values. Text.
-std::string unanswered_sentence(const validate::Certificate& certificate);
 
 /// How the twins were made. Text.
 std::string twin_words(const validate::Certificate& certificate);

@@ -1,5 +1,6 @@
-/// The pages for class in docs/class, which open without a build, are those that the program makes.
+/// The pages and worksheets for class in docs/class, which need no build, are those that the program makes.
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "base/files/file_io.h"
@@ -60,4 +61,46 @@ TEST_CASE("the page of laws for class in docs is the one that the program makes,
   const std::string stored = base::read_file(kClass / "laws.html");
   check_same(without_media(stored), without_media(base::read_file(temp / "class/laws.html")));
   CHECK(stored.find("base64,") != std::string::npos);  // the films are in it
+}
+
+namespace {
+
+std::set<std::string> files_of(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+/// What is written on the sheet. The bytes also depend on the libraries that draw it.
+std::string text_of(const fs::path& pdf) {
+  const tests::ProcessResult text = tests::run({"pdftotext", "-layout", pdf.string(), "-"});
+  INFO(pdf << text.err);
+  REQUIRE(text.status == 0);
+  return text.out;
+}
+
+}  // namespace
+
+TEST_CASE("the worksheets for class in docs are those that the program makes, word by word") {
+  const tests::TempDir temp;
+  const fs::path laws = fs::path(tests::kSourceDir) / "scenarios/laws";
+  const tests::ProcessResult made =
+      tests::glidelab({"laws", laws.string(), "--worksheet", "--quiet", "--out", "sheets"}, temp.path());
+  INFO(made.err);
+  REQUIRE(made.status == 0);
+  INFO("a sheet of docs/class/worksheets is out of date: build class_pages");
+  const std::set<std::string> names = files_of(kClass / "worksheets");
+  CHECK(names == files_of(temp / "sheets"));
+  CHECK(names.size() == 16);
+  if (tests::run({"pdftotext", "-v"}).status != 0) {
+    WARN("skipped: no pdftotext program");
+    return;
+  }
+  for (const std::string& name : names) {
+    CAPTURE(name);
+    const std::string stored = text_of(kClass / "worksheets" / name);
+    CHECK(stored.size() > 100);
+    CHECK(stored == text_of(temp / "sheets" / name));
+  }
 }

@@ -6,7 +6,8 @@ usage: everyday.py make --cases N --seed S --out DIR            # DIR/case-000 â
 
 4 to 12 clips at 25 to 240 frames/s with noise of 0.05 to 1.5 mm; one cause of the list (50 %), two (20 %), none (15 %) or one
 on no list (15 %), with three to five small imperfections. The excess is the mean square, in units of the noise, of what a fit
-of the nominal model leaves of the positions without noise; a share is the part by which it falls without a cause.
+of the nominal model leaves of the positions without noise; a share is the part by which it falls without a cause, and a share
+in order the part that a cause takes beside those before it.
 """
 
 import argparse
@@ -26,6 +27,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import everyday_effects as effects  # noqa: E402
 import everyday_physics as physics  # noqa: E402
 import everyday_score  # noqa: E402
+import everyday_shares  # noqa: E402
 import everyday_unlisted as unlisted  # noqa: E402
 
 CLASSES = (("one", 0.5), ("two", 0.2), ("none", 0.15), ("off", 0.15))
@@ -195,7 +197,8 @@ def draw_case(rng, kind):
     shares = [1.0 - maker.excess([c for c in causes if c is not cause] + small) / whole for cause in causes]
     if causes and not 0.015 <= dirt / whole <= 0.33 or len(causes) == 2 and min(shares) < 0.25:
         raise Impossible
-    return glider, clips, angle_sd, noise, causes, small, positions, whole, dirt, shares
+    in_order = everyday_shares.in_order(maker, causes, positions, whole)
+    return glider, clips, angle_sd, noise, causes, small, positions, whole, dirt, shares, in_order
 
 
 def recorded(rng, noise, positions):
@@ -214,7 +217,7 @@ def recorded(rng, noise, positions):
 
 
 def write_case(folder, rng, case, kind):
-    glider, clips, angle_sd, noise, causes, small, positions, whole, dirt, shares = case
+    glider, clips, angle_sd, noise, causes, small, positions, whole, dirt, shares, (first, left) = case
     step, noisy = recorded(rng, noise, positions)
     os.makedirs(os.path.join(folder, "tracks"))
     lines = ["format = 1", f'name = "{os.path.basename(folder)}"', ""]
@@ -234,7 +237,7 @@ def write_case(folder, rng, case, kind):
         numbers = {k: v for k, v in effect.__dict__.items() if isinstance(v, (int, float))}
         return {"id": effect.id, **numbers, **more}
 
-    truth = {"class": kind, "causes": [told(c, share=s) for c, s in zip(causes, shares)], "imperfections": [told(p) for p in small],
+    truth = {"class": kind, "causes": [told(c, share=s, share_first=f) for c, s, f in zip(causes, shares, first)], "left": left, "imperfections": [told(p) for p in small],
              "excess": whole, "dirt_excess": dirt, "noise_m": noise, "rounding_m": step, "drag_kg_s": glider.drag, "mu": glider.mu,
              "configurations": [{"group": g, "mass_kg": m, "k_over_m_1_s": glider.drag / m, "mu": glider.mu, "alpha_deg": np.degrees(a)}
                                 for g, m, a in sorted({(c.group, c.mass, c.alpha) for c in clips})]}

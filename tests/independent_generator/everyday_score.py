@@ -46,6 +46,19 @@ def alike(a, b):
     return a == b or any({a, b} <= s for s in ALWAYS_ALIKE)
 
 
+def rests_in_order(truth, ids, explained):
+    """Shares of the named causes less what these take beside those before them, as long as those are true ones."""
+    before, left = None, list(truth["causes"])
+    for one in explained:
+        cause = next((c for c in left if one["id"] in ids and alike(one["id"], c["id"])), None)
+        if cause is None or "share_first" not in cause:
+            return
+        left.remove(cause)
+        share = cause["share_first"] if before is None else 1.0 - truth["left"] - before
+        yield (one.get("share") or 0.0) - share
+        before = share
+
+
 def judge(truth, result):
     """What the table counts of one case."""
     causes = sorted(truth["causes"], key=lambda c: -c["share"])
@@ -62,6 +75,7 @@ def judge(truth, result):
         row["told"] = row["first"] or bool(ids) and any(alike(i, true[0]) for i in named[0].get("equivalent_to", []))
         row["wrong"] = [(i, p) for i, p in zip(ids, row["stated"]) if p > 0.8 and not any(alike(i, t) for t in true)]
         row["rests"] = [shares.get(i, 0.0) - c["share"] for i in ids for c in causes if alike(i, c["id"])]
+        row["rests_in_order"] = list(rests_in_order(truth, ids, result.get("explained", [])))
         if truth["class"] == "two":
             row["either_first"] = bool(ids) and any(alike(ids[0], t) for t in true)
             row["both"] = all(any(alike(i, t) for i in ids) for t in true)
@@ -98,11 +112,15 @@ def fraction(hits):
     return f"{100 * k / n:.0f} % ({k} of {n}; {100 * low:.0f} to {100 * high:.0f} %)"
 
 
+def rms(errors):
+    return f"{np.sqrt(np.mean(np.square(errors))):.3f} ({len(errors)})" if errors else "-"
+
+
 def table(rows):
     def of(key, *classes):
         return [r[key] for r in rows if r["class"] in classes]
 
-    rests = [x for r in rows for x in r.get("rests", [])]
+    rests, in_order = ([x for r in rows for x in r.get(key, [])] for key in ("rests", "rests_in_order"))
     yield "main cause first", fraction(of("first", "one", "two"))
     yield "or told as not to be told apart", fraction(of("told", "one", "two"))
     yield "one cause", fraction(of("first", "one"))
@@ -113,7 +131,7 @@ def table(rows):
     yield "imperfections alone, half of the excess claimed", fraction(of("claimed", "none"))
     yield "imperfections alone, any name", fraction(of("named", "none"))
     yield "off the list, a wrong name above 0.8", fraction(of("wrong", "off"))
-    yield "shares, rms error", f"{np.sqrt(np.mean(np.square(rests))):.3f} ({len(rests)})" if rests else "-"
+    yield "shares, rms error; each beside those before it", f"{rms(rests)}; {rms(in_order)}"
     yield "recovered intervals contain the true value", fraction([h for r in rows for h in r["held"]["all"]])
     yield "the same, right causes named", fraction([h for r in rows for h in r["held"]["right"]])
 

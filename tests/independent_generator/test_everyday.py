@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import everyday  # noqa: E402  exits with 77 without numpy or scipy
 import everyday_effects as effects  # noqa: E402
 import everyday_physics as physics  # noqa: E402
+import everyday_shares as shares  # noqa: E402
 import everyday_unlisted as unlisted  # noqa: E402
 import numpy as np  # noqa: E402
 
@@ -90,6 +91,20 @@ class Law(unittest.TestCase):
         self.assertLess(fit.excess([physics.nominal(other, c, c.times) for c in clips]), 0.05)
         drag = effects.QuadraticDrag(0.1)
         self.assertGreater(fit.excess([physics.seen(glider, [drag], c) for c in clips]), 10.0)
+
+    def test_of_two_causes_that_do_the_same_the_first_takes_all_and_of_two_unlike_ones_each_its_own(self):
+        glider, clips = some_clips()
+        maker = everyday.Maker(glider, clips, 1e-4, 1e-3)
+        drag, same = effects.QuadraticDrag(0.02), effects.QuadraticDrag(0.02)
+        shake = effects.CameraMotion(6e-4, omega=20.0, phase=np.arange(6.0))
+        for causes in ([drag, same], [drag, shake]):
+            positions = maker.positions(causes)
+            whole = maker.fit.excess(positions)
+            first, left = shares.in_order(maker, causes, positions, whole)
+            self.assertLess(left, 0.02)
+            self.assertAlmostEqual(sum(first), 2.0 if causes[1] is same else 1.0, delta=0.05)
+            alone = 1.0 - maker.excess([causes[1]]) / whole  # without the first
+            self.assertAlmostEqual(alone, 0.75 if causes[1] is same else first[0], delta=0.05)
 
 
 class Folders(unittest.TestCase):

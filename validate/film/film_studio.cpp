@@ -110,8 +110,10 @@ class RenderedFrames : public core::FrameSource {
     const std::shared_ptr<Canvas> canvas = canvases_.clear_one();
     frame.grey = canvas->image;
     frame.index = index_++;
-    const render::Recording& recording = set_->scenario().recording;
-    frame.t_s = recording.clock.variable ? now->stamp_s : static_cast<double>(frame.index) / recording.frame_rate_hz;
+    const render::Scenario& scenario = set_->scenario();
+    const render::Recording& recording = scenario.recording;
+    frame.t_s = recording.clock.variable ? render::stored_stamp_s(now->stamp_s, scenario.codec, scenario.compression)
+                                         : static_cast<double>(frame.index) / recording.frame_rate_hz;
     // Copies of the frame share the canvas.
     frame.draw = [this, canvas, shown = now->shown](const cv::Rect& part) {
       cv::Mat& image = canvas->image;

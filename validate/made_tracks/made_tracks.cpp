@@ -7,11 +7,13 @@
 #include <random>
 
 #include "base/math/angles.h"
+#include "core/math/even_times.h"
 #include "core/motion/configurations.h"
 #include "core/pictures/marker/marker_fit.h"
 #include "render/camera/frame_clock.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scene.h"
+#include "render/video/video_writer.h"
 #include "sim/motion/motion_scenario.h"
 #include "sim/motion/simulate.h"
 #include "validate/random_use.h"
@@ -139,13 +141,15 @@ core::ClipSetup clip_setup(const sim::ConfigurationSetup& configuration, const s
   return setup;
 }
 
-/// When the frames of the file were taken, and the times stated in the file.
+/// When the frames of the file were taken, and the times that an analysis takes from the file.
 struct FrameTimes {
   std::vector<double> true_s;
-  std::vector<double> stated_s;
+  std::vector<double> read_s;
+  std::optional<core::EvenTimes> even = {};  ///< instead of the file's time stamps
 };
 
-FrameTimes frame_times(const render::Recording& recording, const render::FrameClock& clock, std::size_t slots) {
+FrameTimes frame_times(const render::Scenario& scenario, const render::FrameClock& clock, std::size_t slots) {
+  const render::Recording& recording = scenario.recording;
   FrameTimes times;
   double last_s = 0.0;
   for (std::size_t slot = 0; slot < slots; ++slot) {
@@ -154,9 +158,12 @@ FrameTimes frame_times(const render::Recording& recording, const render::FrameCl
     if (fate == render::FrameFate::recorded) last_s = clock.start_s(slot);
     const auto j = static_cast<double>(times.true_s.size());
     times.true_s.push_back(last_s);
-    times.stated_s.push_back(recording.clock.variable ? clock.stamp_s(slot) - clock.stamp_s(0)
-                                                      : j / recording.frame_rate_hz);
+    times.read_s.push_back(recording.clock.variable
+                               ? render::stored_stamp_s(clock.stamp_s(slot), scenario.codec, scenario.compression)
+                               : j / recording.frame_rate_hz);
   }
+  if (recording.clock.variable) times.even = core::even_times(times.read_s);
+  if (times.even) times.read_s = times.even->t_s;
   return times;
 }
 
@@ -172,7 +179,7 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       const render::FrameClock clock(scenario.recording.clock, scenario.recording.frame_rate_hz, seed,
                                      static_cast<std::uint32_t>(made.tracks.size()));
-      const FrameTimes times = frame_times(scenario.recording, clock, render::frame_count(scenario.recording, motion));
+      const FrameTimes times = frame_times(scenario, clock, render::frame_count(scenario.recording, motion));
       // A duplicated frame has the same instant as the previous one: simulate() needs each instant once.
       std::vector<double> instants = times.true_s;
       instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
@@ -192,7 +199,10 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed) {
         track.frame.push_back(j);
       }
       track.x_m = truth.x_m;
-      track.t_s = track.frame_t_s = times.stated_s;
+      track.t_s = track.frame_t_s = times.read_s;
+      if (times.even) {
+        track.notes.emplace_back(core::EvenStamps{times.even->tick_s, times.even->step_s, times.even->half_width_s});
+      }
       track.frame_rate_hz = scenario.recording.frame_rate_hz;
       made.truth.clips.push_back(std::move(truth));
       made.tracks.push_back(std::move(track));

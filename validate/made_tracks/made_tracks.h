@@ -1,8 +1,9 @@
 /// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no images.
 ///
 /// They are for studies that run estimators thousands of times. The frames follow the scenario's clock (including
-/// dropped, duplicated and late ones), and their times are those that the file would state: frame j at j / rate, or its
-/// stamp if the rate is variable. Nothing else of the camera is modelled: no exposure, lens, shutter, calibration or
+/// dropped, duplicated and late ones), and their times are those that an analysis of the file would use: frame j at
+/// j / rate; for a variable rate, its stamp in the container, or even times where these explain the rounded stamps
+/// (core/math/even_times.h). Nothing else of the camera is modelled: no exposure, lens, shutter, calibration or
 /// plumb line. `noise_sd_m` represents all of that, and predicted_noise_m() predicts its size before anything is
 /// rendered. x is measured from the track's reference point, as in the scenario.
 #pragma once

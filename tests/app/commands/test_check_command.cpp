@@ -70,6 +70,23 @@ bool finds(const json& check, const std::string& severity, const std::string& wo
 
 }  // namespace
 
+TEST_CASE("a table of a body at rest is unusable, and check, analyze and diagnose say that nothing moves") {
+  const tests::TempDir temp;
+  std::string table = "t_s,x_m\n";
+  for (int k = 0; k < 300; ++k) table += fmt::format("{},{:.6f}\n", 0.01 * k, 1.12 + 2e-4 * std::sin(12.9898 * k * k));
+  base::write_file(temp / "rest.csv", table);
+  for (const char* const command : {"check", "analyze", "diagnose"}) {
+    CAPTURE(command);
+    const tests::ProcessResult said = tests::glidelab({command, "rest.csv", "-q", "-o", "out"}, temp.path());
+    const std::string text = said.out + said.err;
+    INFO(text);
+    CHECK(said.status == (std::string(command) == "analyze" ? 0 : 1));
+    CHECK_THAT(text, Catch::Contains("nothing moves"));
+    for (const char* const wrong : {"does not fit", "±", "less scatter", "glidelab diagnose", "parameters", "sable; "})
+      CHECK(text.find(wrong) == std::string::npos);
+  }
+}
+
 TEST_CASE("a recording without a fault is usable, and its numbers are those of the scenario") {
   const Recording recording(scenario());
   const json check = recording.check(0);

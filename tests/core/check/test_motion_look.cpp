@@ -165,11 +165,12 @@ TEST_CASE("a tracker that jumps to and fro shows no motion, nor does a body at r
   CHECK(only<core::found::LostInNoise>(findings(positions([&](double) { return other(random) ? 2.0 : 0.04; }))));
   const auto rests = [](const std::vector<core::Finding>& found) {
     return found.size() == 1 && found[0].severity == core::Severity::change &&
-           tests::fault_as<core::found::LostInNoise>(found[0]) != nullptr;
+           tests::fault_as<core::found::AtRest>(found[0]) != nullptr;
   };
   CHECK(rests(findings(positions([](double) { return 0.3; }, 1e-3))));
   CHECK(rests(findings(positions([](double) { return 0.3; }, 0.2))));
   CHECK(rests(findings(positions([&](double) { return other(random) ? 0.301 : 0.3; }, 0.0))));  // a step of rounding
+  CHECK(rests(findings(positions([](double) { return 0.3; }, 0.0))));
   CHECK(findings(positions(run, 0.02)).empty());
   CHECK(findings(positions([](double t) { return 2e-3 * t; }, 1e-3)).empty());  // 4 mm in two seconds
   Positions few = positions([](double) { return 0.3; }, 1e-3);

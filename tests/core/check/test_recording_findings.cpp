@@ -377,6 +377,36 @@ TEST_CASE("a frame rate that makes the inclination right is the cause, and the i
   CHECK(findings[0].follow.size() == 1);
 }
 
+TEST_CASE("a recording in which nothing moves is unusable, and one clip at rest among others is only left out") {
+  core::MotionLook rest;
+  rest.positions = 200;
+  rest.distance_m = 6e-4;
+  rest.noise_m = rest.spread_m = 1e-4;  // white noise: both are its standard deviation
+  core::MotionLook moving = rest;
+  moving.distance_m = 0.6;
+  moving.spread_m = 0.17;
+  const auto severity = [](const std::vector<core::MotionLook>& looks) -> std::optional<Severity> {
+    core::Experiment of = experiment();
+    core::RecordingCheck check;
+    of.clips.clear();
+    for (const core::MotionLook& look : looks) {
+      core::ClipCheck& clip = check.clips.emplace_back(fine_clip());
+      clip.name = "m" + std::to_string(check.clips.size());
+      clip.motion = look;
+      core::ClipSetup& setup = of.clips.emplace_back(experiment().clips[0]);
+      setup.name = clip.name;
+    }
+    for (const Finding& finding : core::findings_of(of, check)) {
+      if (tests::fault_as<core::found::AtRest>(finding) != nullptr) return finding.severity;
+    }
+    return {};
+  };
+  CHECK(severity({rest}) == Severity::unusable);
+  CHECK(severity({rest, rest}) == Severity::unusable);
+  CHECK(severity({rest, moving}) == Severity::change);
+  CHECK_FALSE(severity({moving}));
+}
+
 TEST_CASE("a track of few positions could be longer, and is unusable only where no fit is left") {
   const auto severity = [](std::size_t positions, double incline_deg) -> std::optional<Severity> {
     core::Experiment of = experiment();

@@ -108,6 +108,19 @@ core::AnalysisResults with_clip(const core::ClipResult& clip) {
 
 }  // namespace
 
+TEST_CASE("a diagnosis refuses a recording in which nothing moves") {
+  for (const double noise_m : {0.0, 1e-4}) {
+    CAPTURE(noise_m);
+    try {
+      doubts_of([&](double t) { return 0.3 + noise_m * std::sin(12.9898e4 * t * t); });
+      FAIL("a body at rest follows no law");
+    } catch (const base::InputError& error) {
+      REQUIRE(error.issues().size() == 1);
+      CHECK(error.issues()[0].found.starts_with("nothing moves"));
+    }
+  }
+}
+
 TEST_CASE("a diagnosis refuses a motion opposite to its stated launch, as the check does") {
   core::ClipSetup setup;
   setup.name = "up";

@@ -222,6 +222,16 @@ TEST_CASE("too little motion is reported clip by clip, with the files") {
   }
 }
 
+TEST_CASE("of clips without a free motion no number of positions is asked for") {
+  const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
+  tests::MadeExperiment still = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, held, 1, 0.0);
+  // A centimetre over the whole clip, one step of it at its middle: neither rest nor a motion.
+  for (core::MotionPoint& point : still.results.clips[0].motion) {
+    if (point.measured_m && point.t_s > 0.7) *point.measured_m += 0.01;
+  }
+  CHECK_THROWS_WITH(diagnosed(still), Catch::Contains("nothing that moves freely") && !Catch::Contains("parameters"));
+}
+
 TEST_CASE("the middle about which a gradient or a bow is defined is stated for each set-up") {
   // K(x) = 0.93 (1 + 0.1 x) = K (1 + b (x - x_mid)): b = 0.1 / (1 + 0.1 x_mid).
   const tests::MadeEffect gradient = {[](double, double x, double v, double) { return -0.93 * 0.1 * x * v; }, {}};

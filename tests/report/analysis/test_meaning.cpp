@@ -91,6 +91,26 @@ TEST_CASE("a clip that swings is doubted before anything else") {
   CHECK(any_has(doubts, "this is an oscillation, not a run along an incline"));
 }
 
+TEST_CASE("a body at rest puts no law in doubt: nothing moves, and no next step but another recording") {
+  core::AnalysisResults results = one_clip();
+  results.configurations[0].clips = {results.clips[0].name};
+  results.clips[0].notes = {core::NoRun{"nothing moves: all positions are the same", "record a body that moves", true}};
+  CHECK(report::nothing_moves(results));
+  CHECK(report::doubts_about(results).empty());
+  for (core::Quantity* const quantity : {&results.configurations[0].k_over_m_1_s, &results.configurations[0].mu,
+                                         &results.configurations[0].alpha_deg, &results.configurations[0].v_lim_m_s}) {
+    *quantity = core::undetermined(core::unknown::NoDownhillMotion{});
+  }
+  const std::string text = report::analysis_text(results);
+  CHECK(text.starts_with("Nothing moves in this recording"));
+  CHECK(text.find("nothing moves: all positions are the same; record a body that moves") != std::string::npos);
+  for (const char* const wrong : {"*", "±", "does not fit", "diagnose"}) CHECK(text.find(wrong) == std::string::npos);
+  CHECK(report::meaning_of(results).find("Nothing moves") != std::string::npos);
+  results.clips.push_back(results.clips[0]);
+  results.clips[1].notes.clear();
+  CHECK_FALSE(report::nothing_moves(results));
+}
+
 TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no friction can cause it") {
   core::AnalysisResults results = one_clip();
   results.gravity_m_s2 = 9.80665;

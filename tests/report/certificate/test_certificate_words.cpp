@@ -183,9 +183,9 @@ TEST_CASE("quantities that no twin gives are said once with the reason, and fill
   fall.configurations = fall.quantities;
   for (validate::CertifiedQuantity& one : fall.configurations) one.setup = 0;
   const std::string text = report::certificate_text(fall), page = report::certificate_page("a", fall).html;
-  CHECK(text.find("No twin gives µ (no line for v > 0).") != std::string::npos);
+  CHECK(text.find("No twin has a value of µ: no line for v > 0.") != std::string::npos);
   CHECK(text.find("\nµ ") == std::string::npos);
-  CHECK(page.find("No twin gives µ (no line for v &gt; 0).") != std::string::npos);
+  CHECK(page.find("No twin has a value of µ: no line for v &gt; 0.") != std::string::npos);
   CHECK(page.find("<td>µ</td>") == std::string::npos);
   CHECK(page.find("<th class=\"n\">µ</th>") == std::string::npos);
   CHECK(page.find(">terminal velocity (m/s)</td>") != std::string::npos);
@@ -263,17 +263,39 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
       {TwinLimit::few_clips, "few clips", "every clip recorded twice", "Record a second clip of each kind"}};
   CHECK(rows.size() == static_cast<std::size_t>(TwinLimit::few_clips) + 1);
   for (const Row& row : rows) {
-    const report::LimitWords words = report::limit_words(change(row.limit, true));
+    const report::LimitWords words = report::limit_words(change(row.limit, true), certificate());
     CHECK(words.limit == row.name);
     CHECK(words.change == row.change);
     CHECK(words.advice == row.advice);
   }
   validate::ChangedTwin two = change(TwinLimit::cause, true);
   two.causes = {"quadratic_drag", "track_bow"};
-  CHECK(report::limit_words(two).advice ==
+  CHECK(report::limit_words(two, certificate()).advice ==
         "Remove these causes from the experiment, or put them into the model (glidelab analyze --with quadratic_drag "
         "--with "
         "track_bow)");
+}
+
+TEST_CASE("of a single clip nobody is advised to make the clips alike, and its motions are counted") {
+  validate::Certificate one = certificate();
+  one.clips = one.motions = 1;
+  one.changes = {change(TwinLimit::clip_scatter, true)};
+  CHECK(report::limit_words(one.changes[0], one).limit == "what the law leaves unexplained");
+  CHECK(report::certificate_text(one).find("40 twins of this recording (1 clip), ") != std::string::npos);
+  CHECK(report::certificate_text(one).find("clips alike") == std::string::npos);
+  one.motions = 11;
+  CHECK(report::limit_words(one.changes[0], one).advice.starts_with("Make the motions alike: "));
+  CHECK(report::certificate_text(one).find("(1 clip with 11 motions), ") != std::string::npos);
+  CHECK(report::certificate_text(one).find("the fitted motions, each as a clip of its own, ") != std::string::npos);
+}
+
+TEST_CASE("a certificate says why no twin has a value of a quantity") {
+  validate::Certificate made = certificate();
+  CHECK(report::certificate_text(made).find("No twin has a value") == std::string::npos);
+  made.quantities[1].failed = 40;
+  made.quantities[1].why.emplace(core::unknown::NoDownhillMotion{});
+  CHECK(report::certificate_text(made).find("No twin has a value of µ: no motion with v > 0.") != std::string::npos);
+  CHECK(report::certificate_page("a", made).html.find("No twin has a value of µ: ") != std::string::npos);
 }
 
 TEST_CASE("everything that twins may lack has words and a reason, an error of several lines in one") {

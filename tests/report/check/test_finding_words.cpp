@@ -165,6 +165,8 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
        "along a straight line"},
       {found::LostInNoise{0.83, 2.0}, "scatter by 0.83 m (one standard deviation) over a distance of 2 m",
        "followed the body"},
+      {found::AtRest{0.0029}, "nothing moves: the positions scatter by 0.0029 m about one place", "followed it"},
+      {found::AtRest{}, "nothing moves: all positions are the same", "a body that moves"},
       {found::FallAboveGravity{1.1 * 9.8, 9.8}, "10 % above gravity: x is 10 % too long, or the frames are 5 % longer",
        "the scale again"},
       {found::LongRun{9.0}, "x covers 9 m", "check the unit of x"},

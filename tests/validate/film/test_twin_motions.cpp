@@ -53,10 +53,10 @@ TEST_CASE("a twin moves as the data do, to their noise") {
   CHECK(std::sqrt(square) < 1.12 * noise);
 }
 
-TEST_CASE("a twin says that it has one frame rate, and one stretch of a clip, where the data have more") {
+TEST_CASE("a twin has a clip for each motion, from its own start, and says that it has one frame rate") {
   auto made = tests::made_experiment(tests::made_launches(), kDrag, 11);
   const std::string whole = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2}).twin;
-  CHECK(whole.find("stretch") == std::string::npos);
+  CHECK(whole.find("motion-2") == std::string::npos);
   CHECK(whole.find("# Assumed: 100 frames") == std::string::npos);
   for (std::size_t k = 60; k < 90; ++k) {  // nobody saw the marker for 0.3 s
     core::MotionPoint& point = made.results.clips[0].motion[k];
@@ -64,8 +64,24 @@ TEST_CASE("a twin says that it has one frame rate, and one stretch of a clip, wh
     point.left_out = core::LeftOut::no_marker;
   }
   made.results.clips[1].frame_rate_hz = 100.001;
-  const std::string twin = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2}).twin;
-  CHECK(twin.find("# Assumed: only the first of clip clip0's stretches of motion, of 2.\n") != std::string::npos);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  const std::string twin = diagnosis.twin;
+  // Both stretches of the first clip move in the twin as in the data, to their noise of 30 µm.
+  std::size_t seen = 0;
+  for (const validate::TwinMotion& motion : validate::twin_motions(diagnosis, 1)) {
+    if (!motion.clip.starts_with("clip0")) continue;
+    CHECK(motion.clip == (seen++ == 0 ? "clip0" : "clip0-motion-2"));
+    REQUIRE(motion.rest_m.size() > 50);
+    double mean = 0.0, square = 0.0;
+    for (const double rest_m : motion.rest_m) mean += rest_m / static_cast<double>(motion.rest_m.size());
+    for (const double rest_m : motion.rest_m) square += std::pow(rest_m - mean, 2);
+    CHECK(std::sqrt(square / static_cast<double>(motion.rest_m.size())) < 6e-5);
+    CHECK(motion.v_m_s.size() <= motion.rest_m.size());  // the speeds of its own motion alone
+    CHECK(motion.v_m_s.size() > 20);
+  }
+  CHECK(seen == 2);
+  CHECK(twin.find("# Assumed: a clip for each of the 9 motions, without what lies between those of one clip of the "
+                  "data.\n") != std::string::npos);
   CHECK(twin.find("# Assumed: 100 frames a second, the first clip's, for all clips.\n") != std::string::npos);
 }
 

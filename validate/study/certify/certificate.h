@@ -156,11 +156,12 @@ using NotInTwins =
 struct Certificate {
   std::size_t runs = 0;
   std::string estimator;
-  bool filmed = false;  ///< clips were filmed and tracked; otherwise positions were simulated
-  std::size_t clips = 0;
-  std::vector<CertifiedSetup> setups;                 ///< the twins' configurations
-  RunShare together;                                  ///< coverage of K/m, mu and alpha, in all configurations
-  RunShare wide_together;                             ///< the same with the interval of CertifiedQuantity
+  bool filmed = false;                 ///< clips were filmed and tracked; otherwise positions were simulated
+  std::size_t clips = 0;               ///< recorded
+  std::size_t motions = 0;             ///< in these; each is a clip of a twin. 0: as many
+  std::vector<CertifiedSetup> setups;  ///< the twins' configurations
+  RunShare together;                   ///< coverage of K/m, mu and alpha, in all configurations
+  RunShare wide_together;              ///< the same with the interval of CertifiedQuantity
   std::vector<CertifiedExplanation> explanations;     ///< those that the twins follow, the reported one first
   std::vector<CertifiedQuantity> quantities;          ///< all configurations together: those with a truth
   std::vector<CertifiedQuantity> configurations;      ///< each on its own, if there are several

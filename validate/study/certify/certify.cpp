@@ -371,10 +371,11 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   certificate.without = twin.without;
   certificate.recorded_noise_m = twin.noise_m;
   for (const sim::ConfigurationSetup& setup : twin.scenario.motion.configurations) {
-    certificate.clips += setup.motions.size();
+    certificate.motions += setup.motions.size();
     certificate.setups.push_back({setup.name, setup.body.mass_kg, setup.stated_incline_rad});
   }
 
+  certificate.clips = twin.recorded_clips > 0 ? twin.recorded_clips : certificate.motions;
   const std::vector<WantedChange> wanted = options.changes ? wanted_changes(twin) : std::vector<WantedChange>{};
   const ChangeRuns changed_runs = runs_of_change(twin, options);
   std::atomic<std::size_t> all = options.runs + wanted.size() * changed_runs.most, finished = 0;

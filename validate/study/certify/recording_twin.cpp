@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -10,7 +11,6 @@
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "diagnose/effects/effect_list.h"
-#include "diagnose/twin/twin.h"
 #include "sim/motion/simulate.h"
 #include "validate/random_use.h"
 #include "validate/study/certify/scattered_body.h"
@@ -56,24 +56,15 @@ double size_of(const diagnose::Diagnosis& diagnosis, std::string_view id, std::s
   return 0.0;
 }
 
-const core::ClipResult& clip_of(const core::AnalysisResults& results, const std::vector<std::string>& names,
-                                const std::string& name) {
-  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
-  return results.clips.at(static_cast<std::size_t>(at));
-}
-
 /// The noise of the positions of every clip of the scenario, in the scenario's order.
 std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
                                 const render::Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
-  names = diagnose::twin_clip_names(names);
   std::vector<ClipNoise> clips;
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       const auto data = std::find_if(diagnosis.measured.begin(), diagnosis.measured.end(),
                                      [&](const auto& one) { return one.clip == motion.name; });
-      const core::ClipResult& clip = clip_of(results, names, motion.name);
+      const core::ClipResult& clip = results.clips.at(data->recorded);
       ClipNoise noise = noise_of(clip);
       for (const core::MotionPoint& point : clip.motion) {
         if (!point.measured_m || point.t_s < data->t_s.front() || point.t_s > data->t_s.back()) continue;
@@ -164,6 +155,9 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     std::erase(twin.causes, lack.what);
     twin.without.emplace_back(lacking::Inexpressible{lack.what, lack.why});
   }
+  std::set<std::size_t> recorded;
+  for (const diagnose::MeasuredMotion& motion : diagnosis.measured) recorded.insert(motion.recorded);
+  twin.recorded_clips = recorded.size();
   twin.explanations = explanations_of(diagnosis, twin.scenario);
   twin.noise_m = median_noise(results);
   for (const core::ClipResult& clip : results.clips) {

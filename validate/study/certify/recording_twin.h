@@ -1,5 +1,8 @@
 /// Twins of a recording: its fitted motions, with the causes named by its diagnosis, recorded again as often as wanted.
 ///
+/// Every motion is a clip of its own, from its fitted start: of a cart that bounces, each flight. What lies between the
+/// motions of one recorded clip is not in a twin.
+///
 /// The truth of a twin is drawn: it follows one of the explanations weighed by the diagnosis, with that explanation's
 /// probability, so a drag that is likely but not named is in some of the twins. Each clip also has the remainder of
 /// that explanation (diagnose/causes/remainder.h): inclination, friction and drag that scatter from clip to clip, and a
@@ -67,6 +70,7 @@ struct RecordingTwin {
   render::Scenario scenario;                  ///< of the explanation reported by the diagnosis
   std::vector<TwinExplanation> explanations;  ///< empty: the scenario, without remainder
   bool filmed = false;
+  std::size_t recorded_clips = 0;  ///< whose motions the clips of the scenario are; 0: one each
   std::vector<ClipNoise> clips;    ///< of tracks: one for each clip of the scenario, in its order
   bool by_scale = false;           ///< lengths come from one px_per_m, not from a pattern
   double scale_sd_relative = 0.0;  ///< of that

@@ -1,5 +1,7 @@
 #include "validate/study/certify/certify.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -101,6 +103,37 @@ TEST_CASE("twins of a track predict the errors and the coverage of the scenario 
     CHECK(predicted.coverage.low <= predicted.coverage.share);
     CHECK(predicted.coverage.share <= predicted.coverage.high);
   }
+}
+
+TEST_CASE("twins repeat every flight of a cart that bounces, and so have values of mu and alpha") {
+  // dv/dt = g sin α - K/m v - sign(v) µ g cos α, in steps of 0.1 ms; at the stop the cart keeps 0.8 of its speed.
+  const double alpha = 2.0 * std::numbers::pi / 180.0, g = 9.80665, mu = 0.003, k_over_m = 0.1, stop_m = 0.9;
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> noise(0.0, 2e-4);
+  std::string table = "t_s,x_m\n";
+  double x = 0.0, v = 0.0;
+  for (int step = 0; step <= 120000; ++step) {
+    if (step % 100 == 0) table += fmt::format("{},{:.7f}\n", 1e-4 * step, x + noise(engine));
+    v += 1e-4 * (g * std::sin(alpha) - k_over_m * v - (v < 0.0 ? -1.0 : 1.0) * mu * g * std::cos(alpha));
+    x += 1e-4 * v;
+    if (x > stop_m && v > 0.0) v *= -0.8;
+  }
+  const tests::TempDir temp;
+  base::write_file(temp / "cart.csv", table);
+  CertifyOptions options{.runs = 20, .seed = 4, .jobs = 2, .changes = false};
+  options.bare.mass_kg = 0.5;
+  options.bare.incline_deg = 2.0;
+  const Certificate certificate = certify({temp / "cart.csv"}, options);
+  CHECK(certificate.clips == 1);
+  CHECK(certificate.motions >= 3);  // 2.3 s down, then flights of 3.7 s, 3 s, …: twelve seconds
+  std::size_t known = 0;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    INFO(quantity.quantity);
+    if (quantity.quantity == "v_lim_m_s") continue;
+    CHECK(quantity.answered() >= 18);
+    ++known;
+  }
+  CHECK(known == 3);
 }
 
 namespace {
