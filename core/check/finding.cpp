@@ -87,4 +87,10 @@ FaultWords fault_words(const MotionFault& fault) {
 }
 
 }  // namespace found
+
+bool is_playback(double file_hz, double stated_hz) {
+  constexpr double kFastestPlayed_hz = 61.0, kLeastSlower = 2.9;
+  return file_hz < kFastestPlayed_hz && stated_hz > kLeastSlower * file_hz;
+}
+
 }  // namespace glidelab::core

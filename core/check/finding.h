@@ -475,6 +475,10 @@ struct Finding {
   std::vector<Finding> follow = {};  ///< findings that follow from this one, which is their root cause
 };
 
+/// Whether a file is made to be played slowly, as high-speed clips are: at a third of the stated rate or less. At half
+/// of it, frames may have been dropped instead.
+bool is_playback(double file_hz, double stated_hz);
+
 /// Collects the findings about one subject; `findings` outlive it.
 class FindingBook {
  public:

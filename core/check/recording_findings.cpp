@@ -246,11 +246,6 @@ void note_assumptions(const std::vector<ClipSetup>& setups, std::vector<Finding>
 
 }  // namespace
 
-bool is_playback(double file_hz, double stated_hz) {
-  constexpr double kFastestPlayed_hz = 61.0, kLeastSlower = 2.9;
-  return file_hz < kFastestPlayed_hz && stated_hz > kLeastSlower * file_hz;
-}
-
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings = statement_findings(experiment, check);
   if (check.pattern) judge_pattern(*check.pattern, {findings, {Subject::Part::pattern}});

@@ -13,10 +13,6 @@ namespace glidelab::core {
 /// The most severe first; what several clips have in common is stated once.
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check);
 
-/// Whether a file is made to be played slowly, as high-speed clips are: at a third of the stated rate or less. At half
-/// of it, frames may have been dropped instead.
-bool is_playback(double file_hz, double stated_hz);
-
 /// Statements in a wrong unit, found from their size and from what the motion says: the one cause behind many findings.
 ///
 /// A square, a marker, a track and a mass each have a usual size in a laboratory; one that is a hundred or a thousand

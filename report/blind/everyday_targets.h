@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "validate/blind/everyday_score.h"
-#include "validate/truth/binomial.h"
 
 namespace glidelab::report {
 

@@ -10,7 +10,6 @@
 #include <utility>
 #include <variant>
 
-#include "core/check/recording_findings.h"
 #include "core/result/results.h"
 #include "core/result/uphill.h"
 #include "report/analysis/note_words.h"
