@@ -33,7 +33,7 @@ double common_step(std::span<const double> steps) {
 
 std::optional<HeldValues> held_values(std::span<const double> x) {
   constexpr std::size_t kFewestRuns = 6;
-  constexpr double kFewestRows = 2.0, kMostRuns = 0.8;
+  constexpr double kFewestRows = 2.0, kMostRuns = 0.6;
   constexpr double kFewestUnits = 1.5;  // whole numbers of them: two or more
   constexpr double kUsualPart = 0.9;
   const std::vector<std::size_t> starts = starts_of_runs(x);
@@ -54,6 +54,7 @@ std::optional<HeldValues> held_values(std::span<const double> x) {
   for (std::size_t run = 0; run < starts.size(); ++run) {
     const std::size_t end = run + 1 < starts.size() ? starts[run + 1] : x.size();
     for (std::size_t row = starts[run]; row < end; row += held.usual) {
+      if (row > starts[run] && 2 * (end - row) < held.usual) break;  // the next value is only somewhat late
       held.is_held[row] = false;
       --held.count;
     }

@@ -1,12 +1,12 @@
 /// Rows in which a logger repeats a value that a slower sensor gave before, while the body moves on.
 ///
-/// Runs of equal values follow each other: without the first and the last, there are six or more, and four in five of
-/// them have two rows or more. A rounded position repeats too, but a slow body then goes on by one unit of its
+/// Runs of equal values follow each other: without the first and the last, there are six or more, and three in five
+/// of them have two rows or more. A rounded position repeats too, but a slow body then goes on by one unit of its
 /// rounding. So the values count as held only if they are not all multiples of one step, or if the median step is two
 /// such units or more.
 ///
 /// A run that is longer than usual holds several equal values of the sensor, as of a body at rest: after every
-/// `usual` rows, the 90 % quantile of the runs, a row is taken for a value of its own.
+/// `usual` rows, the 90 % quantile of the runs, a row is taken for a value of its own, if half as many follow.
 #pragma once
 
 #include <cstddef>

@@ -253,12 +253,22 @@ void split_parts(std::vector<TableColumn>& columns) {
   }
 }
 
+/// A quantity with components, which is no body.
+bool names_a_rate(const std::string& words) {
+  static constexpr std::array<std::string_view, 12> kParts{"accel", "aceler", "acc\xC3\xA9l", "beschleun",
+                                                           "veloc", "speed",  "vitesse",      "geschwindig",
+                                                           "gyro",  "force",  "rotation",     "field"};
+  return std::ranges::any_of(kParts, [&](std::string_view part) { return words.find(part) != std::string::npos; });
+}
+
 /// Bodies before their axes: "cart X", "cart Y". Of a single axis, the words may be a name.
 void split_axes(std::vector<TableColumn>& columns) {
   const auto body_of = [](const TableColumn& column, char axis) -> std::string {
     const std::size_t size = column.name.size();
     const bool ends = size > 2 && column.name[size - 2] == ' ' && lower(column.name).back() == axis;
-    return ends && column.run.empty() ? column.name.substr(0, size - 2) : std::string();
+    const bool of_length = column.unit.empty() || metres_per(column.unit) || is_pixels(column.unit);
+    const bool of_body = ends && of_length && column.run.empty() && !names_a_rate(lower(column.name));
+    return of_body ? column.name.substr(0, size - 2) : std::string();
   };
   std::vector<std::string> bodies;
   for (const TableColumn& column : columns) {

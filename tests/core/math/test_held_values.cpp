@@ -55,6 +55,18 @@ TEST_CASE("a slow body whose rounded position repeats is not held by its sensor,
   CHECK_FALSE(core::held_values({}));
 }
 
+TEST_CASE("a sensor whose new values come unevenly, now and then in the next row, holds its values too") {
+  std::vector<double> values;
+  std::size_t brought = 0;
+  for (int many = 0; values.size() < 150; ++many, ++brought) {
+    const double at = speeding_up(static_cast<double>(values.size()) / kLogger_hz);
+    values.resize(values.size() + static_cast<std::size_t>(many % 3 == 0 ? 1 : 4 + many % 5), at);
+  }
+  const auto held = core::held_values(values);
+  REQUIRE(held);
+  CHECK(values.size() - held->count == brought);
+}
+
 TEST_CASE("a rest seen by a slow sensor keeps a row for each of its values") {
   const auto rests_between = [](double t_s) {
     return t_s < 0.7 ? speeding_up(t_s) : t_s < 1.4 ? speeding_up(0.7) : speeding_up(t_s - 0.7);

@@ -175,6 +175,12 @@ TEST_CASE("a table of Qualisys has its frame rate above its header, millimetres,
   CHECK(track.x_m[9] == Approx(place_m(9)).margin(1e-6));
 }
 
+TEST_CASE("components of a velocity are those of no body") {
+  std::string text = "t,x,velocity x,velocity y\n";
+  for (int i = 0; i < kRows; ++i) text += fmt::format("{},{:.6f},{},0\n", i / kRate_hz, place_m(i), 0.6 * i / kRate_hz);
+  CHECK(Made(text).read({}).x_m[9] == Approx(place_m(9)).margin(1e-6));
+}
+
 TEST_CASE("columns that are named by numbers are no statements above a header") {
   std::string text = "time,10,20\n";
   for (int i = 0; i < kRows; ++i) text += fmt::format("{},{:.6f},3\n", i / kRate_hz, place_m(i));

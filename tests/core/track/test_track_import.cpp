@@ -167,7 +167,7 @@ TEST_CASE("bad tables give one clear error each") {
       {"a few words\nand some more\n", "no line with two numbers"},
       {"", "t_s"},
       {"t (s),x (m)\n" + rows("0.{0},{1}\n") + "0.95,oops\n", ":12: column 2: found \"oops\""},
-      {"t (s),x (m)\n" + rows("0.{0},{1}\n") + "0.9,1\n", ":12: column \"t (s)\""},
+      {"t (s),x (m)\n" + rows("0.{0},{1}\n") + "0.8,1\n", ":12: column \"t (s)\""},
       {"t (s),x (m)\n" + rows("0,{0},0,{1}\n"), "decimal comma"},
       {"t (s),y (m),z (m)\n" + rows("0.{0},{1},1\n"), "--column"},
       {"t (s),x (px)\n" + rows("0.{0},{1}\n"), "the unit \"px\""},
