@@ -75,13 +75,17 @@ std::string beyond_text(const validate::TargetResult& result) {
   return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
 }
 
+bool any_run(const Requirement& requirement) {
+  return std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
+    return std::ranges::any_of(candidate.results, [](const auto& result) { return result.runs > 0; });
+  });
+}
+
 /// If tracks or the bound judged, says what tracks do not include, and recommends rendering if that could change the
 /// result: images can only add to the error.
 std::string next_step(const Requirement& requirement) {
   if (requirement.confirm == validate::Confirm::clips) return {};
-  const bool ran = std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
-    return std::ranges::any_of(candidate.results, [](const auto& result) { return result.runs > 0; });
-  });
+  const bool ran = any_run(requirement);
   const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
     return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
   });
@@ -174,13 +178,15 @@ std::string judge_sentence(const Requirement& requirement) {
   return common.empty() ? common : fmt::format("All were judged with the {}.", common);
 }
 
-/// All of them, the cheapest first: what a choice rests on.
+/// All of them, the cheapest first: what a choice rests on; the bounds where nothing was run.
 std::string candidate_table(const Requirement& requirement) {
   std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
   const std::size_t first_number = header.size();
+  const bool ran = any_run(requirement);
   for (const Target& target : requirement.targets) {
-    header.push_back(escape(target_name(target, scale_of(target).factor)));
-    header.push_back("upper limit");
+    const std::string name = escape(target_name(target, scale_of(target).factor));
+    header.push_back(ran ? name : "bound of the " + name);
+    if (ran) header.push_back("upper limit");
   }
   header.insert(header.end(), {"frames/s", "position noise (µm)"});
   HtmlTable table(header, first_number);
@@ -193,8 +199,8 @@ std::string candidate_table(const Requirement& requirement) {
                                     reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
     for (std::size_t t = 0; t < candidate.results.size(); ++t) {
       const double scale = scale_of(requirement.targets[t]).size;
-      row.push_back(found_text(candidate.results[t], scale));
-      row.push_back(limit_cell(candidate.results[t], scale));
+      row.push_back(ran ? found_text(candidate.results[t], scale) : bound_text(candidate.results[t].bound, scale));
+      if (ran) row.push_back(limit_cell(candidate.results[t], scale));
     }
     row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
     table.row(row);

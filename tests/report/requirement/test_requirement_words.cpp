@@ -231,4 +231,7 @@ TEST_CASE("what the bound alone says is what is expected at best") {
   requirement.candidates[0].results = {{4.2e-4, {}, 0.0, 0, 0, ""}};
   CHECK_THAT(report::requirement_answer(requirement),
              Contains("comes nearest. Expect at best µ within 0.00042: judged by the bound alone; nothing was run."));
+  // The table has the bounds, not a column of dashes.
+  CHECK_THAT(report::requirement_report(requirement).html,
+             Contains("bound of the 95 % error of µ") && Contains(">420</td>") && !Contains(">upper limit</th>"));
 }
