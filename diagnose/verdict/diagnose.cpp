@@ -12,7 +12,6 @@
 #include "diagnose/next/next_experiment.h"
 #include "diagnose/pictures/image_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
-#include "diagnose/twin/twin.h"
 #include "diagnose/verdict/settled_motions.h"
 #include "diagnose/verdict/verdict_with_causes.h"
 #include "diagnose/weigh/air_odds.h"
@@ -47,9 +46,11 @@ void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion
   std::vector<std::size_t> motions(results.clips.size(), 0);
   for (const MeasuredMotion& one : measured) ++motions[one.recorded];
   for (MeasuredMotion& one : measured) {
-    for (const core::MotionPoint& point : results.clips[one.recorded].motion) {
+    const std::vector<core::MotionPoint>& motion = results.clips[one.recorded].motion;
+    for (const core::MotionPoint& point : motion) {
       if (!point.smoothed || point.left_out != core::LeftOut::used || one.t_s.empty()) continue;
-      const bool within = one.t_s.front() <= point.t_s && point.t_s <= one.t_s.back();
+      const double t_s = point.t_s - motion.front().t_s;
+      const bool within = one.t_s.front() <= t_s && t_s <= one.t_s.back();
       if (motions[one.recorded] > 1 && !within) continue;
       one.v_m_s.push_back(point.v_m_s);
       one.a_m_s2.push_back(point.a_m_s2);

@@ -67,8 +67,9 @@ std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diag
       const core::ClipResult& clip = results.clips.at(data->recorded);
       ClipNoise noise = noise_of(clip);
       for (const core::MotionPoint& point : clip.motion) {
-        if (!point.measured_m || point.t_s < data->t_s.front() || point.t_s > data->t_s.back()) continue;
-        noise.frame_s.push_back(point.t_s - data->start_s);
+        const double t_s = point.t_s - clip.motion.front().t_s;  // as the motions of a diagnosis count
+        if (!point.measured_m || t_s < data->t_s.front() || t_s > data->t_s.back()) continue;
+        noise.frame_s.push_back(t_s - data->start_s);
       }
       clips.push_back(std::move(noise));
     }

@@ -113,7 +113,7 @@ TEST_CASE("twins repeat every flight of a cart that bounces, and so have values 
   std::string table = "t_s,x_m\n";
   double x = 0.0, v = 0.0;
   for (int step = 0; step <= 120000; ++step) {
-    if (step % 100 == 0) table += fmt::format("{},{:.7f}\n", 1e-4 * step, x + noise(engine));
+    if (step % 100 == 0) table += fmt::format("{:.2f},{:.7f}\n", 3.0 + 1e-4 * step, x + noise(engine));
     v += 1e-4 * (g * std::sin(alpha) - k_over_m * v - (v < 0.0 ? -1.0 : 1.0) * mu * g * std::cos(alpha));
     x += 1e-4 * v;
     if (x > stop_m && v > 0.0) v *= -0.8;
