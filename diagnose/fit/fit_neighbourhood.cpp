@@ -35,17 +35,33 @@ ProjectedMotion project(const FitMotion& motion) {
   return result;
 }
 
-void CommonNormal::add(const ProjectedMotion& motion, double sign) {
-  matrix += sign * base::transposed_product(motion.common, motion.common);
-  right += sign * base::transposed_product(motion.common, motion.residual);
+void CommonNormal::add(const ProjectedMotion& motion) {
+  matrix += base::transposed_product(motion.common, motion.common);
+  right += base::transposed_product(motion.common, motion.residual);
 }
 
-CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
-                          std::size_t clip) {
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (set.motions[i].clip == clip) all.add(motions[i], -1.0);
+void CommonNormal::add(const CommonNormal& others) {
+  matrix += others.matrix;
+  right += others.right;
+}
+
+std::vector<CommonNormal> without_each_clip(const TrackSet& set, const CommonNormal& stated,
+                                            const std::vector<ProjectedMotion>& motions) {
+  const std::size_t clips = set.clips.size();
+  const CommonNormal nothing{Eigen::MatrixXd::Zero(stated.matrix.rows(), stated.matrix.cols()),
+                             Eigen::VectorXd::Zero(stated.right.size())};
+  std::vector<CommonNormal> of_clip(clips, nothing), without(clips, stated);
+  for (std::size_t i = 0; i < motions.size(); ++i) of_clip[set.motions[i].clip].add(motions[i]);
+  CommonNormal before = nothing, after = nothing;
+  for (std::size_t c = 0; c < clips; ++c) {
+    without[c].add(before);
+    before.add(of_clip[c]);
   }
-  return all;
+  for (std::size_t c = clips; c-- > 0;) {
+    without[c].add(after);
+    after.add(of_clip[c]);
+  }
+  return without;
 }
 
 CommonNormal statements_normal(const MotionFit& fit) {

@@ -51,11 +51,14 @@ struct CommonNormal {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
 
-  void add(const ProjectedMotion& motion, double sign = 1.0);
+  void add(const ProjectedMotion& motion);
+  void add(const CommonNormal& others);
 };
-/// The normal equations without the motions of one clip.
-CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
-                          std::size_t clip);
+/// The normal equations of the statements and of all clips but one, for each clip. They are summed without that clip:
+/// if it alone determines a parameter, as the only one that reaches a bumper does, a difference of sums would leave
+/// rounding errors in place of nothing.
+std::vector<CommonNormal> without_each_clip(const TrackSet& set, const CommonNormal& stated,
+                                            const std::vector<ProjectedMotion>& motions);
 
 /// The normal equations of the statements alone.
 CommonNormal statements_normal(const MotionFit& fit);

@@ -117,13 +117,8 @@ struct HeldOutFit {
 
 HeldOutFit held_out(const TrackSet& set, const MotionFit& fit) {
   HeldOutFit out;
-  CommonNormal all = statements_normal(fit);
-  for (const FitMotion& motion : fit.motions) {
-    out.motions.push_back(project(motion));
-    all.add(out.motions.back());
-  }
-  for (std::size_t c = 0; c < set.clips.size(); ++c) {
-    const CommonNormal others = without_clip(set, all, out.motions, c);
+  for (const FitMotion& motion : fit.motions) out.motions.push_back(project(motion));
+  for (const CommonNormal& others : without_each_clip(set, statements_normal(fit), out.motions)) {
     out.covariance.push_back(inverse_normal(others.matrix));
     out.shift.push_back(base::product(out.covariance.back(), others.right));
   }

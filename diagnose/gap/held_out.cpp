@@ -17,8 +17,8 @@ constexpr std::size_t kStretches = 4, kFewestStretches = 3;  // of a single clip
 constexpr std::size_t kMotionsForAll = 3;  // motions of a single clip from which on each is held out: fewer may all go
                                            // in one direction
 constexpr std::size_t kFewest = 8;         // points of a stretch, or to smooth
-constexpr double kLeastKnown = 1e-4;       // relative to a statement's variance: below this, a pull is a difference of
-                                           // rounding errors
+constexpr double kLeastKnown = 1e-4;       // of information, relative to a statement's or to that of all clips: below
+                                           // this, what else is known of a parameter is no measure of anything
 
 /// Adds the squares of the second derivative of the residuals, smoothed as the analysis smooths positions, of a motion
 /// from point `first` on.
@@ -72,48 +72,68 @@ std::size_t stretches_of(std::size_t points, bool only) {
   return std::clamp<std::size_t>(points / kFewest, only ? kFewestStretches : 1, kStretches);
 }
 
-/// Adds motions that are held out together, each with a start of its own. `others` has the other motions, and
-/// `together` is the covariance by all. With G the derivatives with respect to the common parameters, C their
-/// covariance by the others and u the residuals of the prediction,
-///
-///     u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u).
-void add_held_out(const TrackSet& set, const std::vector<ProjectedMotion>& motions, const CommonNormal& others,
-                  const Eigen::MatrixXd& together, const std::vector<std::size_t>& which, ClipGap& clip) {
-  const Eigen::VectorXd shift = base::product(inverse_normal(others.matrix), others.right);
-  Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
-  for (const std::size_t i : which) {
-    const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
-    clip.freedom += motions[i].freedom;
-    clip.chi2 += u.squaredNorm();
-    gu += base::transposed_product(motions[i].common, u);
-    add_accelerations(set, i, coloured(set.motions[i], u), 0, clip);
+/// The part of a step that the others can be asked for: a parameter of which they know next to nothing, compared with
+/// all, stays where all have it. They would predict any acceleration with a bumper that only this clip reaches.
+Eigen::VectorXd known_step(const CommonNormal& others, const Eigen::VectorXd& information_of_all) {
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index g = 0; g < others.right.size(); ++g) {
+    if (others.matrix(g, g) > kLeastKnown * information_of_all[g]) known.push_back(g);
   }
-  const Eigen::VectorXd taken = base::product(together, gu);
-  clip.chi2 -= gu.dot(taken);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(others.right.size());
+  if (known.empty()) return step;
+  step(known) = base::product(inverse_normal(others.matrix(known, known)), Eigen::VectorXd(others.right(known)));
+  return step;
+}
+
+/// The change of the common parameters from the fit to its linear minimum.
+Eigen::VectorXd to_minimum(CommonNormal all, const std::vector<ProjectedMotion>& motions) {
+  for (const ProjectedMotion& motion : motions) all.add(motion);
+  return base::product(inverse_normal(all.matrix), all.right);
+}
+
+/// Adds motions that are held out together, each with a start of its own. `others` has the other motions and the
+/// statements, and `shift` leads to the minimum by all. With G the derivatives with respect to the common parameters, C
+/// their covariance by the others, r the residuals at the minimum by all and g the gradient G'r of the others there,
+/// which is minus that of these motions, the residuals u of the prediction have
+///
+///     u = r - G C g,    u'(1 + G C G')^-1 u = r'r + g'C g.
+///
+/// What the others do not determine at all has no part in g.
+void add_held_out(const TrackSet& set, const std::vector<ProjectedMotion>& motions, CommonNormal others,
+                  const Eigen::VectorXd& shift, const std::vector<std::size_t>& which, ClipGap& clip) {
+  others.right -= base::product(others.matrix, shift);
+  Eigen::VectorXd information = others.matrix.diagonal();
+  for (const std::size_t i : which) information += motions[i].common.colwise().squaredNorm().transpose();
+  const Eigen::VectorXd step = known_step(others, information);
+  for (const std::size_t i : which) {
+    const Eigen::VectorXd r = motions[i].residual - base::product(motions[i].common, shift);
+    clip.freedom += motions[i].freedom;
+    clip.chi2 += r.squaredNorm();
+    add_accelerations(set, i, coloured(set.motions[i], r - base::product(motions[i].common, step)), 0, clip);
+  }
+  const Eigen::VectorXd to_others = base::product(inverse_normal(others.matrix), others.right);
+  clip.chi2 += others.right.dot(to_others);
 }
 
 /// The stretches of a single clip's motions, each predicted from all the others, with the motion's own start and speed
-/// from the rest of the motion. With D a stretch's derivatives with respect to the common and the motion's own
-/// parameters, N the normal matrix of both and r the residuals of the fit to everything,
-///
-///     u'(1 + D (N - D'D)^-1 D')^-1 u = r'r + (D'r)' (N - D'D)^-1 D'r,     u = r + D (N - D'D)^-1 D'r.
+/// from the rest of the motion. This is add_held_out() with D in place of G, a stretch's derivatives with respect to
+/// the common and the motion's own parameters, and C and g those of all but the stretch.
 ///
 /// A motion of too few points for two stretches is held out whole: nothing else tells its start, which is fitted to it.
 HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
   const MotionFit fit = at_linear_minimum(set, at);
-  CommonNormal all = statements_normal(fit);
+  const CommonNormal stated = statements_normal(fit);
   std::vector<ProjectedMotion> projected;
-  for (const FitMotion& motion : fit.motions) {
-    projected.push_back(project(motion));
-    all.add(projected.back());
-  }
-  const Eigen::MatrixXd together = inverse_normal(all.matrix);
+  for (const FitMotion& motion : fit.motions) projected.push_back(project(motion));
+  const Eigen::VectorXd shift = to_minimum(stated, projected);
   std::vector<ClipGap> clips;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     const FitMotion& motion = fit.motions[i];
     const TrackedMotion& data = set.motions[i];
-    CommonNormal others = all;
-    others.add(projected[i], -1.0);
+    CommonNormal others = stated;
+    for (std::size_t j = 0; j < projected.size(); ++j) {
+      if (j != i) others.add(projected[j]);
+    }
     const std::size_t points = data.t_s.size(), stretches = stretches_of(points, fit.motions.size() == 1);
     const auto named = [&](std::size_t from, std::size_t to) {
       return ClipGap{
@@ -121,27 +141,34 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
     };
     if (stretches == 1) {
       ClipGap clip = named(0, points);
-      add_held_out(set, projected, others, together, {i}, clip);
+      add_held_out(set, projected, others, shift, {i}, clip);
       if (clip.freedom > 0.0) clips.push_back(std::move(clip));
       continue;
     }
     const Eigen::Index common = motion.global.cols(), own = motion.own.cols();
     Eigen::MatrixXd columns(motion.global.rows(), common + own);
     columns << motion.global, motion.own;
-    Eigen::MatrixXd normal = base::transposed_product(columns, columns);
-    normal.topLeftCorner(common, common) += others.matrix;
     for (std::size_t k = 0; k < stretches; ++k) {
       const std::size_t from = points * k / stretches, to = points * (k + 1) / stretches;
       ClipGap clip = named(from, to);
       for (std::size_t p = from; p < to; ++p) clip.freedom += data.outlier[p] ? 0.0 : 1.0;
       if (clip.freedom <= 0.0) continue;
       const auto row = static_cast<Eigen::Index>(from), rows = static_cast<Eigen::Index>(to - from);
+      const Eigen::Index after = columns.rows() - row - rows;
+      Eigen::MatrixXd rest(columns.rows() - rows, common + own);
+      Eigen::VectorXd of_rest(rest.rows());
+      rest << columns.topRows(row), columns.bottomRows(after);
+      of_rest << motion.residual.head(row), motion.residual.tail(after);
+      CommonNormal all_but{base::transposed_product(rest, rest), base::transposed_product(rest, of_rest)};
+      all_but.matrix.topLeftCorner(common, common) += others.matrix;
+      all_but.right.head(common) += others.right;
+      const Eigen::VectorXd r = motion.residual.segment(row, rows);
       const Eigen::MatrixXd d = columns.middleRows(row, rows);
-      const Eigen::VectorXd r = motion.residual.segment(row, rows), dr = base::transposed_product(d, r);
-      const Eigen::VectorXd taken = base::product(inverse_normal(normal - base::transposed_product(d, d)), dr);
-      clip.chi2 = r.squaredNorm() + dr.dot(taken);
+      const Eigen::VectorXd information = all_but.matrix.diagonal() + d.colwise().squaredNorm().transpose();
+      const Eigen::VectorXd to_rest = base::product(inverse_normal(all_but.matrix), all_but.right);
+      clip.chi2 = r.squaredNorm() + all_but.right.dot(to_rest);
       Eigen::VectorXd whole = Eigen::VectorXd::Zero(motion.residual.size());
-      whole.segment(row, rows) = r + base::product(d, taken);
+      whole.segment(row, rows) = r - base::product(d, known_step(all_but, information));
       add_accelerations(set, i, coloured(data, std::move(whole)).segment(row, rows), from, clip);
       clips.push_back(std::move(clip));
     }
@@ -170,9 +197,9 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   }
   std::vector<ProjectedMotion> motions;
   for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
-  CommonNormal all = statements_normal(fit);
-  for (const ProjectedMotion& motion : motions) all.add(motion);
-  const Eigen::MatrixXd together = inverse_normal(all.matrix);
+  const CommonNormal stated = statements_normal(fit);
+  const Eigen::VectorXd shift = to_minimum(stated, motions);
+  const std::vector<CommonNormal> others = without_each_clip(set, stated, motions);
   std::vector<ClipGap> clips;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     ClipGap clip{set.clips[c].name};
@@ -180,7 +207,7 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (set.motions[i].clip == c) own.push_back(i);
     }
-    add_held_out(set, motions, without_clip(set, all, motions, c), together, own, clip);
+    add_held_out(set, motions, others[c], shift, own, clip);
     if (clip.freedom <= 0.0) continue;  // nothing in it moves
     clips.push_back(std::move(clip));
   }

@@ -303,3 +303,41 @@ TEST_CASE("three motions of a single clip are held out as three clips of one mot
   REQUIRE(one.clips.size() == 3);
   CHECK(one.value == Approx(three.value).epsilon(1e-9));
 }
+
+TEST_CASE("a clip that alone determines a parameter, in two motions, has the chi² that it adds to a fit of all") {
+  // As a clip does that alone reaches a bumper: on its way there and back. Whatever the parameter's unit is, the other
+  // clips say exactly nothing of it.
+  for (const double unit : {1.0, 1e3, 1e6}) {
+    Linear made = linear_case(true, 0.0, 1.0);
+    for (std::size_t i = 1; i < 3; ++i) made.fit.motions[i].global.col(0).setZero();
+    made.fit.motions[0].global.col(0) *= unit;
+    diagnose::FitMotion back = made.fit.motions[0];  // the same numbers in another order are another motion
+    back.global = Eigen::MatrixXd(back.global.colwise().reverse());
+    back.residual = Eigen::VectorXd(-0.7 * made.fit.motions[0].residual.reverse());
+    back.plain = back.residual;
+    made.fit.motions.push_back(back);
+    made.fit.at.own.push_back(Eigen::Vector2d::Zero());
+    made.set.motions.push_back(made.set.motions[0]);
+    const diagnose::HeldOutGap gap = diagnose::held_out_gap(made.set, made.fit);
+    REQUIRE(gap.clips.size() == 3);
+    const auto least_chi2 = [&](const std::vector<std::size_t>& motions) {
+      const auto many = static_cast<Eigen::Index>(motions.size());
+      Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(many * kPoints + 1, 3 + 2 * many);
+      Eigen::VectorXd right(columns.rows());
+      for (Eigen::Index k = 0; k < many; ++k) {
+        const diagnose::FitMotion& of = made.fit.motions[motions[static_cast<std::size_t>(k)]];
+        columns.block(k * kPoints, 0, kPoints, 3) = of.global;
+        columns.col(0).segment(k * kPoints, kPoints) /= unit;
+        columns.block(k * kPoints, 3 + 2 * k, kPoints, 2) = of.own;
+        right.segment(k * kPoints, kPoints) = of.residual;
+      }
+      columns(many * kPoints, 2) = 1.0 / kSd;
+      right[many * kPoints] = kStated / kSd;
+      return (right - columns * columns.completeOrthogonalDecomposition().solve(right)).squaredNorm();
+    };
+    // Of a linear model: what the clip adds to the least chi² is that of its prediction.
+    const double expected = least_chi2({0, 1, 2, 3}) - least_chi2({1, 2});
+    CHECK(gap.clips[0].chi2 == Approx(expected).epsilon(1e-6));
+    CHECK(gap.clips[0].freedom == 2.0 * (kPoints - 2));
+  }
+}
