@@ -18,9 +18,13 @@ double log_odds_of_sizes(const MotionFit& fit);
 /// bumper is: beyond some stiffness no position tells how stiff it is.
 std::vector<std::size_t> effects_at_end(const MotionFit& fit);
 
-/// Sets Comparison::fit_odds: those of the sizes, a thousandth for each effect at an end of its range, and, in a fall
-/// through air, those of the drag (air_odds.h). The inertia of air that moves along has a third of the odds of the drag
-/// alone that it belongs to.
+/// The effects of a fit with a place at which they are not looked for. A bumper is short and stands in the outer
+/// quarter of the positions at either end; a fit may leave these for any place, where the same force is a cable's.
+std::vector<std::size_t> effects_off_search(const TrackSet& set, const MotionFit& fit);
+
+/// Sets Comparison::fit_odds: those of the sizes, a thousandth for each effect at an end of its range or at a place at
+/// which it is not looked for, and, in a fall through air, those of the drag (air_odds.h). The inertia of air that
+/// moves along has a third of the odds of the drag alone that it belongs to.
 void set_fit_odds(const TrackSet& set, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

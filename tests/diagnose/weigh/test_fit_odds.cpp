@@ -51,3 +51,24 @@ TEST_CASE("the axis of a lens is rarer at an end of the motion than in its middl
   CHECK(log_odds(low + 0.25 * (high - low)) == Approx(-std::log(2.0)));
   CHECK(log_odds(high) == Approx(-std::log(5.0)));
 }
+
+TEST_CASE("a bumper stands in the outer quarter at either end, a cable tightens anywhere") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::ParameterRange x = diagnose::range_of_places(set);
+  const auto log_odds = [&](std::string_view id, double part) {
+    const std::size_t effect = diagnose::effect_index(id);
+    const double place_m = x.low + part * (x.high - x.low);
+    diagnose::Comparison comparison;
+    comparison.fits = {
+        diagnose::linearise_at(set, {effect}, diagnose::with_effect(set, nominal, effect, {1.0, place_m}, {}))};
+    diagnose::set_fit_odds(set, comparison);
+    return comparison.fit_odds.front();
+  };
+  for (const double part : {0.0, 0.1, 0.24, 0.76, 0.9, 1.0}) CHECK(log_odds(diagnose::ids::end_stop, part) == 0.0);
+  for (const double part : {0.3, 0.4, 0.5, 0.6, 0.7}) {
+    CHECK(log_odds(diagnose::ids::end_stop, part) == Approx(-std::log(1000.0)));
+  }
+  for (const double part : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) CHECK(log_odds(diagnose::ids::tether, part) == 0.0);
+}
