@@ -54,6 +54,9 @@ struct HandExplained {
 struct SetAside {
   std::size_t positions = 0;  ///< of the motion, all
   double part = 0.0;
+
+  /// A third or more: the rest does not show that nothing is missing.
+  bool is_large() const { return part >= 1.0 / 3.0; }
 };
 
 /// With a single clip, pieces or quarters are held out in place of clips.

@@ -124,8 +124,10 @@ struct Sentence {
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
         "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they "
-        "are outliers, and no known effect explains them. The verdict holds for the rest.",
-        of.positions, 100.0 * of.part);
+        "are outliers, and no known effect explains them. {}",
+        of.positions, 100.0 * of.part,
+        of.is_large() ? "If a hand holds the body there, state when it lets go (start_s in experiment.toml)."
+                      : "The verdict holds for the rest.");
   }
   std::string operator()(const diagnose::PiecesHeldOut&) const {
     return "There is only one clip: each piece of its motion is held out in turn.";
