@@ -83,7 +83,9 @@ struct NoInclination {
 };
 
 /// Tracks of several folders: their positions count from one origin.
-struct OneOrigin {};
+struct OneOrigin {
+  bool left_out = false;  ///< nobody states one for files by themselves: causes at a place are not considered
+};
 
 /// Nobody states a mass: 1 kg is assumed.
 struct NoMassStated {};

@@ -168,7 +168,12 @@ struct Sentence {
   std::string operator()(const diagnose::OfReading& of) const {
     return fmt::format("{}: {}.", of.clip, note_words(of.note));
   }
-  std::string operator()(const diagnose::OneOrigin&) const {
+  std::string operator()(const diagnose::OneOrigin& of) const {
+    if (of.left_out) {
+      return "These are files by themselves, and nobody states that their positions count from one origin. So causes "
+             "at a place (a cable, a bumper, a friction or a scale that varies along x) are not named. If there is one "
+             "origin, put the files into a folder with an experiment.toml.";
+    }
     return "Positions of all folders are taken to count from one origin. If they do not, friction, cables and bumpers "
            "at a place cannot be found: diagnose the folders one by one.";
   }
