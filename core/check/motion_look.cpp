@@ -37,6 +37,7 @@ constexpr double kSmoothPart = 1e-7;                        // of the range of x
 constexpr double kAboveGravity = 1.05;                      // of g: a fall has 1
 constexpr double kFarAboveGravity = 2.0;                    // of g: no scale or frame rate is measured that badly
 constexpr double kMedian = 2.0;                             // parabolas' sds by which the median of |a| is certain
+constexpr double kLeastOfMetres = 0.3;                      // of g: a fall in feet would have 3.3, in centimetres 100
 constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;      // of g, on an incline of less than 60 degrees
 constexpr double kSameGravity = 0.1;                        // of g
 constexpr double kMostBend = 0.08;                          // a wide lens bends a straight path by half of that
@@ -350,7 +351,8 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
              Topic::incline);
   } else if (sure > kAboveGravity * gravity_m_s2) {
     book.add(Severity::change, found::FallAboveGravity{a, gravity_m_s2}, Topic::length);
-  } else if (look.distance_m > (falls ? kLongFall_m : kLongRange_m)) {
+  } else if (look.distance_m > (falls ? kLongFall_m : kLongRange_m) &&
+             !(falls && a > kLeastOfMetres * gravity_m_s2 && a < kAboveGravity * gravity_m_s2)) {
     book.add(Severity::change, found::LongRun{look.distance_m}, Topic::length);
   }
   if (findings.empty() && !falls && look.push_m_s2 > 0.0) {

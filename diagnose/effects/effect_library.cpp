@@ -66,6 +66,16 @@ bool follows_each_clip(std::size_t effect) {
   return effect_list()[effect].search == Search::pushes || differs_between_clips(effect);
 }
 
+bool is_bound_to_place(std::size_t effect) {
+  const EffectInfo& info = effect_list()[effect];
+  if (info.law.seen_m != nullptr && (info.law.seen_by == SeenBy::lens || info.law.seen_by == SeenBy::plane))
+    return true;
+  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const EffectParameter& parameter) {
+    return parameter.reach == Reach::places || parameter.shown_as == ShownAs::along_track ||
+           parameter.shown_as == ShownAs::itself_and_middle || parameter.shown_as == ShownAs::place_of_middle;
+  });
+}
+
 bool differs_between_clips(std::size_t effect) {
   const std::vector<EffectParameter>& parameters = effect_list()[effect].parameters;
   return std::any_of(parameters.begin(), parameters.end(),

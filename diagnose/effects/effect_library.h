@@ -35,6 +35,10 @@ std::size_t first_alike(std::size_t effect, bool filmed);
 /// Whether an effect has a size of its own for each clip. Such an effect can follow any difference between clips.
 bool differs_between_clips(std::size_t effect);
 
+/// Whether it acts at a place, or changes from place to place along x: clips whose x counts from different origins
+/// cannot share it.
+bool is_bound_to_place(std::size_t effect);
+
 /// Whether it has a size of its own for each clip, or a push of its own in each motion.
 bool follows_each_clip(std::size_t effect);
 

@@ -77,6 +77,7 @@ Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const Next
     change.downhill = downhill_at(set.groups[clip.group].stated_rad);
   }
   change.rate_so_far_hz = so.rate_hz;
+  change.mass_assumed = set.mass_assumed;
   return change;
 }
 

@@ -55,7 +55,7 @@ AddMass mass_between(const TrackSet& set) {
     widest = apart;
     next = 0.5 * (masses[m] + masses[m - 1]);
   }
-  return {next};
+  return {next, set.mass_assumed};
 }
 
 }  // namespace

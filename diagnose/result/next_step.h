@@ -46,6 +46,7 @@ struct Change {
   std::string on = {};          ///< the set-up's name, if there are several
   int downhill = 0;             ///< sign of x downhill where its clip is recorded; 0: the track is level there
   double rate_so_far_hz = 0.0;  ///< highest frame rate of the clips so far
+  bool mass_assumed = false;    ///< nobody states a mass, and 1 kg stands for it
 };
 
 /// What was compared to find the best change.
@@ -91,6 +92,7 @@ struct CoverRegion {
 /// A further mass.
 struct AddMass {
   double mass_kg = 0.0;
+  bool assumed = false;  ///< nobody states a mass, and 1 kg stands for the one so far
 };
 
 /// What would show an effect that only images or single frames reveal.

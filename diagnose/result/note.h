@@ -54,6 +54,9 @@ struct HandExplained {
 struct SetAside {
   std::size_t positions = 0;  ///< of the motion, all
   double part = 0.0;
+
+  /// A third or more: the rest does not show that nothing is missing.
+  bool is_large() const { return part >= 1.0 / 3.0; }
 };
 
 /// With a single clip, pieces or quarters are held out in place of clips.
@@ -80,7 +83,9 @@ struct NoInclination {
 };
 
 /// Tracks of several folders: their positions count from one origin.
-struct OneOrigin {};
+struct OneOrigin {
+  bool left_out = false;  ///< nobody states one for files by themselves: causes at a place are not considered
+};
 
 /// Nobody states a mass: 1 kg is assumed.
 struct NoMassStated {};

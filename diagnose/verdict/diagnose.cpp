@@ -89,6 +89,19 @@ std::optional<SensorPositions> sensor_of(const core::AnalysisResults& results,
   return of;
 }
 
+/// Whether these are files by themselves, each of which may count x from an origin of its own. A sensor stays where it
+/// is, and a folder says that its clips belong together.
+bool lack_common_origin(const std::vector<core::Experiment>& folders, const std::optional<SensorPositions>& sensor) {
+  return folders.size() > 1 && !sensor &&
+         std::ranges::any_of(folders, [](const core::Experiment& one) { return core::is_bare_track(one.file); });
+}
+
+/// Whether a cause at a place is named, or told to help.
+bool tells_a_place(const Diagnosis& diagnosis) {
+  const auto is_at_place = [](const auto& of) { return is_bound_to_place(effect_index(of.id)); };
+  return std::ranges::any_of(diagnosis.effects, is_at_place) || std::ranges::any_of(diagnosis.explained, is_at_place);
+}
+
 /// The named effect that acts where the analysis sees a hand or an end stop; null if there is none.
 const std::string* named_of_hand(const Diagnosis& diagnosis) {
   if (diagnosis.verdict != Verdict::effect) return nullptr;
@@ -150,12 +163,22 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   }
   if (settle_noise_again(best_fit(comparison), set)) comparison = compare(0.9, 0.9);
   if (const auto reversed = reversed_force(set, comparison.fits.front())) set.notes.emplace_back(*reversed);
-  Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
+  Diagnosis diagnosis = with_causes(set, std::move(comparison), images, without, options.jobs, progress);
+  const bool no_origin = lack_common_origin(folders, sensor);
+  if (no_origin && tells_a_place(diagnosis)) {
+    for (std::size_t e = 0; e < effect_list().size(); ++e) {
+      if (is_bound_to_place(e)) without.push_back(e);
+    }
+    diagnosis = with_causes(set, compare(0.9, 0.9), std::move(images), without, options.jobs, progress);
+  }
   quote_tables(diagnosis);
   if (const std::string* effect = with_hand > 0 ? named_of_hand(diagnosis) : nullptr) {
     diagnosis.notes.emplace_back(HandExplained{with_hand, *effect});
   }
   if (sensor) diagnosis.notes.emplace_back(*sensor);
+  for (Note& note : diagnosis.notes) {
+    if (auto* const origin = std::get_if<OneOrigin>(&note)) origin->left_out = no_origin;
+  }
   if (std::optional<FitsCutOff> cut_off = fits_cut_off(diagnosis.ranking)) {
     diagnosis.notes.emplace_back(std::move(*cut_off));
   }

@@ -7,6 +7,7 @@
 
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/held_out.h"
 #include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/verdict/verdict.h"
 
@@ -272,6 +273,34 @@ const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& se
   const std::vector<std::size_t>& effects = sequence.named.effects;
   const Hypothesis* named = effects.empty() ? nullptr : find(comparison, {effects.begin(), effects.end()});
   return named != nullptr ? *named : best;
+}
+
+bool viscous_leaves_less(const TrackSet& set, const Comparison& comparison, std::optional<double> over_viscous) {
+  const std::size_t drag = effect_index(ids::quadratic_drag);
+  const auto has_other_law = [&](const Hypothesis& one) {
+    return std::any_of(one.effects.begin(), one.effects.end(),
+                       [&](std::size_t e) { return e != drag && effect_list()[e].drag == Drag::of_air; });
+  };
+  const auto touches = [](const Hypothesis& one) {
+    return std::any_of(one.effects.begin(), one.effects.end(),
+                       [](std::size_t e) { return effect_list()[e].touch == Touch::in_one_place; });
+  };
+  const Hypothesis *viscous = nullptr, *quadratic = nullptr;
+  for (const Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.fit < 0 || !one.converged || has_other_law(one)) continue;
+    if (!has(one, drag) && touches(one)) continue;
+    const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
+    if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
+  }
+  constexpr double kClearly = 2.3;  // log evidence: ten to one
+  if (viscous == nullptr || quadratic == nullptr) return false;
+  if (viscous->log_evidence < quadratic->log_evidence + kClearly) return false;
+  const auto gap_of = [&](const Hypothesis& one) {
+    const MotionFit& fit = comparison.fits[static_cast<std::size_t>(one.fit)];
+    return held_out_gap(set, fit_motions(set, fit.effects, fit.at, fit.late)).value;
+  };
+  return FallsThroughAir{over_viscous, FallsThroughAir::Gaps{gap_of(*viscous), gap_of(*quadratic)}}
+      .viscous_leaves_less();
 }
 
 }  // namespace glidelab::diagnose

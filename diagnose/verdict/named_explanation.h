@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/causes/cause_sequence.h"
@@ -58,5 +59,10 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
 
 /// The explanation by the causes that keep their name in a sequence; `best` if it was not weighed by itself.
 const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best);
+
+/// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
+/// with what acts beside it. Bumpers and cables do not count, since nothing but air touches the body, nor do other laws
+/// of the drag of air. `over_viscous` is that of FallsThroughAir.
+bool viscous_leaves_less(const TrackSet& set, const Comparison& comparison, std::optional<double> over_viscous);
 
 }  // namespace glidelab::diagnose

@@ -283,7 +283,9 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   const MotionFit& nominal = comparison.fits.front();
   diagnosis.limits = limits_of(set, nominal);
   const bool driven = diagnosis.verdict == Verdict::none && !diagnosis.limits.driving.empty();
-  if (driven) {  // whatever drives the glider has no name
+  const bool aside =
+      diagnosis.verdict == Verdict::none && diagnosis.limits.set_aside && diagnosis.limits.set_aside->is_large();
+  if (driven || aside) {  // whatever drives the glider, or acts in what is set aside, has no name
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   }
@@ -329,8 +331,8 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   const bool beside_named =
       diagnosis.verdict == Verdict::unknown && !std::all_of(leading.begin(), leading.end(), differs_between_clips);
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
-  const bool drives =
-      driven && diagnosis.verdict == Verdict::unknown;  // K or mu is negative: no function is known to be missing
+  // K or mu is negative, or much is set aside: no function is known to be missing.
+  const bool drives = (driven || aside) && diagnosis.verdict == Verdict::unknown;
   if (drives) {
     diagnosis.stage = Stage::dynamics;
   } else if (diagnosis.verdict != Verdict::none) {

@@ -136,7 +136,12 @@ class VerdictWithCauses {
   CauseSequence sequence_with(const Hypothesis& one) const {
     return sequence_of(gap_set_, gap_nominal_, gap_with_, best_start(one), without_, weighed_ ? kLeastNamed : 0.0);
   }
-  bool viscous_leaves_less() const;
+  bool viscous_leaves_less() const { return diagnose::viscous_leaves_less(set_, by(), over_viscous_); }
+  /// Whether a fit by the noise alone leaves a gap, and a fall with a viscous drag and nothing else clearly less.
+  bool leaves_more_than_viscous(const MotionFit& fit) const {
+    const FallsThroughAir of{over_viscous_, gaps_of_fall(held_out_gap(set_, fit).value)};
+    return of.viscous_leaves_less() && has_gap(set_, fit);
+  }
   FallsThroughAir::Gaps gaps_of_fall(double named) const { return {held_out_gap(set_, nominal()).value, named}; }
   NoiseAlone noise_alone() const { return {gap_set_, gap_nominal_, sequence_.named, sized_.set, sized_.fit}; }
 
@@ -234,9 +239,14 @@ const MotionFit& VerdictWithCauses::best_start(const Hypothesis& one) const {
   return of_own < of_with || !std::isfinite(of_with) ? own->noise_alone : with;
 }
 
-/// K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
+/// K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any,
+/// unless K does better: that gap would flatter any drag.
 void VerdictWithCauses::choose_measure_of_gap() {
   by_air_ = set_.through_air && claims_ && names_ && has(best_, effect_index(ids::quadratic_drag));
+  if (by_air_ && weighed_) {
+    const MotionFit& from = best_start(best_);
+    by_air_ = !leaves_more_than_viscous(fit_motions(set_, from.effects, from.at, from.late));
+  }
   if (by_air_) over_viscous_ = evidence_over_viscous(by(), best_);
   gap_set_ = by_air_ ? without_drag(set_) : set_;
   gap_with_ = by_air_ ? without_drag(with()) : with();
@@ -286,40 +296,10 @@ void VerdictWithCauses::size_causes() {
   }
 }
 
-/// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
-/// with what acts beside it. Bumpers and cables do not count, since nothing but air touches the body, nor do other laws
-/// of the drag of air.
-bool VerdictWithCauses::viscous_leaves_less() const {
-  const std::size_t drag = effect_index(ids::quadratic_drag);
-  const auto has_other_law = [&](const Hypothesis& one) {
-    return std::any_of(one.effects.begin(), one.effects.end(),
-                       [&](std::size_t e) { return e != drag && effect_list()[e].drag == Drag::of_air; });
-  };
-  const auto touches = [](const Hypothesis& one) {
-    return std::any_of(one.effects.begin(), one.effects.end(),
-                       [](std::size_t e) { return effect_list()[e].touch == Touch::in_one_place; });
-  };
-  const Hypothesis *viscous = nullptr, *quadratic = nullptr;
-  for (const Hypothesis& one : by().all) {
-    if (one.unnamed || one.fit < 0 || !one.converged || has_other_law(one)) continue;
-    if (!has(one, drag) && touches(one)) continue;
-    const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
-    if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
-  }
-  constexpr double kClearly = 2.3;  // log evidence: ten to one
-  if (viscous == nullptr || quadratic == nullptr) return false;
-  if (viscous->log_evidence < quadratic->log_evidence + kClearly) return false;
-  const auto gap_of = [&](const Hypothesis& one) {
-    const MotionFit& fit = by().fits[static_cast<std::size_t>(one.fit)];
-    return held_out_gap(set_, fit_motions(set_, fit.effects, fit.at, fit.late)).value;
-  };
-  return FallsThroughAir{over_viscous_, FallsThroughAir::Gaps{gap_of(*viscous), gap_of(*quadratic)}}
-      .viscous_leaves_less();
-}
-
 /// The least probability of an unknown cause, by the sizes of what is named.
 double VerdictWithCauses::least_unknown() const {
-  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_);
+  const bool leaves_much = open_size_ && sequence_.gap_after > kFollowed;
+  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_) || leaves_much;
   return doubtful ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
@@ -332,7 +312,9 @@ bool VerdictWithCauses::settle_probabilities() {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   set_unknown(std::max(comparison.unknown, least_unknown()), comparison);
-  if (by_air_ && viscous_leaves_less()) set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
+  if (by_air_ && (viscous_leaves_less() || leaves_more_than_viscous(sequence_.named))) {
+    set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
+  }
   return verdict_by(comparison.none, comparison.unknown) == Verdict::effect;
 }
 

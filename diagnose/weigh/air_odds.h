@@ -15,7 +15,10 @@
 ///
 ///     8/3 rho r³ = 11 g     for r = 0.15 m and rho = 1.2 kg/m³.
 ///
-/// or, where no mass is stated, ten times the mass (fit/drag_of_air.h).
+/// or, where no mass is stated, ten times the mass (fit/drag_of_air.h). An inertia above
+/// that by less than two standard deviations is neither, and has odds of 0.001. Where drag bears half of the weight or
+/// more, nothing but air moves along: inertia slows a wheel, not drag, and a body that is seen at its terminal velocity
+/// allows any inertia.
 ///
 /// Such an inertia beside a quadratic drag is a second cause (odds of 1/20), not the air of that drag.
 ///

@@ -53,7 +53,9 @@ std::vector<std::size_t> effects_at_end(const MotionFit& fit) {
     const EffectParameter* parameter = globals[g].parameter;
     if (parameter == nullptr || parameter->each != Each::experiment) continue;
     const EffectInfo& info = effect_list()[globals[g].effect];
-    if (info.search == Search::spread || parameter->open_ended || parameter->slot.parameter != info.law.size) continue;
+    const bool is_size = parameter->slot.parameter == info.law.size;
+    const bool is_touch = parameter->reach == Reach::places && info.touch == Touch::in_one_place;
+    if (info.search == Search::spread || parameter->open_ended || !(is_size || is_touch)) continue;
     if (is_at_end(globals[g].range, fit.at.global[static_cast<Eigen::Index>(g)], parameter->absent)) {
       found.push_back(globals[g].effect);
     }

@@ -14,8 +14,9 @@ namespace glidelab::diagnose {
 /// such errors are rare.
 double log_odds_of_sizes(const MotionFit& fit);
 
-/// The effects of a fit with a size at an end of the range that is searched. None is open-ended, as a
-/// bumper is: beyond some stiffness no position tells how stiff it is.
+/// The effects of a fit with a size at an end of the range that is searched, or with the place of a bumper or a cable
+/// at an end of the positions, where it touches always or never. None is open-ended, as a bumper's stiffness is: beyond
+/// some no position tells how stiff it is.
 std::vector<std::size_t> effects_at_end(const MotionFit& fit);
 
 /// The effects of a fit with a place at which they are not looked for. A bumper is short and stands in the outer

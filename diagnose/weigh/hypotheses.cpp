@@ -167,11 +167,14 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
 
   const Hypothesis nothing = comparison.all.front();
   fit_best(set, nominal, best_of(comparison.scans, kMostFitted), nothing, work.at(0.2), comparison);
-  if (const std::size_t air = effect_index(ids::quadratic_drag);
-      set.through_air && !left_out.contains(air) && find(comparison, {air}) == nullptr) {
-    // In place of K it is fitted even if it does not show beside K.
-    EffectScan scan = comparison.scans[air];
-    if (scan.values.empty()) scan.values = {effect_list()[air].parameters.front().step};
+  // In a fall through air the drag in place of K is fitted even if it does not show beside K. So is a scale or a clock
+  // that is off: K imitates either.
+  const std::size_t air = effect_index(ids::quadratic_drag);
+  for (const std::size_t effect : {air, effect_index(ids::scale_error), effect_index(ids::frame_rate_error)}) {
+    if (!set.through_air || left_out.contains(effect) || find(comparison, {effect}) != nullptr) continue;
+    EffectScan scan = comparison.scans[effect];
+    if (!scan.visible && effect != air) continue;
+    if (scan.values.empty()) scan.values = {effect_list()[effect].parameters.front().step};
     add(comparison, fit_more(set, nominal, scan, nothing));
   }
   if (is_misfit(set, nominal)) {

@@ -163,8 +163,11 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       gap.floor < 1.0
           ? " (below 1, because what the causes remove had raised the noise estimated from neighbouring positions)"
           : "",
-      gap.shrink ? "The gap " + shrink_text(gap) + " of its distance from the floor."
-                 : std::string("It is at the floor."),
+      gap.shrink
+          ? "The gap " + shrink_text(gap) + " of its distance from the floor." +
+                (diagnosis.explained.empty() ? ""
+                                             : " Shares are of its square less that of the floor, since variances add.")
+          : std::string("It is at the floor."),
       !over_clips.too_few
           ? "The intervals show how much these numbers would differ with other clips of the same kind (jackknife: each "
             "clip left out of the mean in turn)."
@@ -285,12 +288,15 @@ std::string ranking_text(const diagnose::Diagnosis& diagnosis) {
 }
 
 /// The gap of held-out clips or lines, before and after what the verdict adds to the model; if it adds nothing, once.
-std::string gap_lines(const diagnose::GapSizes& gap, const char* of, bool one) {
+std::string gap_lines(const diagnose::GapSizes& gap, const char* of, bool one, bool shares) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text = one ? fmt::format("gap of held-out {}: {:.3f} (floor {:.3g})\n", of, gap.before, gap.floor)
                          : fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n", of,
                                        gap.before, gap.after, gap.floor);
-  if (gap.shrink) text += "  it " + shrink_text(gap) + " of its distance from the floor\n";
+  if (gap.shrink && !one) {
+    text += "  it " + shrink_text(gap) + " of its distance from the floor\n";
+    if (shares) text += "  shares are of its square less that of the floor, since variances add\n";
+  }
   const auto before_and_after = [&](const std::string& before, const std::string& after) {
     return one ? before : before + " before, " + after + " after";
   };
@@ -370,7 +376,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     if (finding.seen) text += wrapped("images: " + image_words(finding.fact));
   }
   if (diagnosis.gap) {
-    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips", one_model(diagnosis));
+    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips", one_model(diagnosis),
+                      !diagnosis.explained.empty() && !diagnosis.lines);
   }
   if (sequence.empty()) text += "\n" + wrapped("next: " + next_step_words(diagnosis.next));
   for (const std::string& note : notes_words(diagnosis)) text += wrapped("note: " + note);

@@ -16,6 +16,11 @@
 
 namespace glidelab::report {
 
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 namespace {
 
 /// The note on falls through air; null if there is none.
@@ -30,11 +35,6 @@ constexpr double kPercent = 100.0;
 constexpr double kNearEnd = 0.01;      // of a share: this close to 0 or 1, a tenth of a percent matters
 constexpr double kNothing = 5e-4;      // a share that prints as 0.0 %
 constexpr std::size_t kSizesTold = 2;  // parameters of a cause that its sentence states
-
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
 
 /// "uneven frame times", "outliers": not "inertia of wheels", "smoothing bias".
 bool is_plural(const std::string& name) {
@@ -166,6 +166,11 @@ bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis) {
   return falls_through_air(diagnosis) != nullptr;
 }
 
+bool leaves_noise_alone(const diagnose::Diagnosis& diagnosis) {
+  constexpr double kByChance = 2.0;  // standard errors
+  return !diagnosis.gap || diagnosis.gap->before < 1.0 + kByChance * diagnosis.gap->standard_error;
+}
+
 bool leaves_nothing(const diagnose::GapRemainder& remainder) {
   constexpr double kAboveNoise = 1.1;  // a gap; of a gap of hundreds a share of nothing may be as much as ten
   return remainder.share < kNothing && remainder.gap < kAboveNoise;
@@ -261,7 +266,9 @@ std::string sequence_words(const diagnose::Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case diagnose::Verdict::none:
       if (diagnosis.traces.empty()) return {};
-      text = "Nothing that matters is missing.";
+      text = leaves_noise_alone(diagnosis)
+                 ? "Nothing that matters is missing."
+                 : "Nothing is clearly missing, though what the nominal model leaves is more than the noise.";
       break;
     case diagnose::Verdict::effect:
       if (diagnosis.explained.empty()) return {};

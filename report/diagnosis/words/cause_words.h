@@ -17,6 +17,12 @@ bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis);
 /// "91 %", "99.7 %" and "0.3 %" within 1 % of the ends, and its interval: "91 % (86 to 95 %)".
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval = {});
 
+/// With a capital letter.
+std::string capital(std::string text);
+
+/// Whether the nominal model leaves no more than noise alone would by chance: two standard errors above 1.
+bool leaves_noise_alone(const diagnose::Diagnosis& diagnosis);
+
 /// Whether the causes leave nothing: a remainder whose share prints as 0.0 %, of a gap within a tenth of the noise.
 bool leaves_nothing(const diagnose::GapRemainder& remainder);
 

@@ -124,8 +124,10 @@ struct Sentence {
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
         "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they "
-        "are outliers, and no known effect explains them. The verdict holds for the rest.",
-        of.positions, 100.0 * of.part);
+        "are outliers, and no known effect explains them. {}",
+        of.positions, 100.0 * of.part,
+        of.is_large() ? "If a hand holds the body there, state when it lets go (start_s in experiment.toml)."
+                      : "The verdict holds for the rest.");
   }
   std::string operator()(const diagnose::PiecesHeldOut&) const {
     return "There is only one clip: each piece of its motion is held out in turn.";
@@ -166,7 +168,12 @@ struct Sentence {
   std::string operator()(const diagnose::OfReading& of) const {
     return fmt::format("{}: {}.", of.clip, note_words(of.note));
   }
-  std::string operator()(const diagnose::OneOrigin&) const {
+  std::string operator()(const diagnose::OneOrigin& of) const {
+    if (of.left_out) {
+      return "These are files by themselves, and nobody states that their positions count from one origin. So causes "
+             "at a place (a cable, a bumper, a friction or a scale that varies along x) are not named. If there is one "
+             "origin, put the files into a folder with an experiment.toml.";
+    }
     return "Positions of all folders are taken to count from one origin. If they do not, friction, cables and bumpers "
            "at a place cannot be found: diagnose the folders one by one.";
   }

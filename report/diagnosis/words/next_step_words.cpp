@@ -63,6 +63,12 @@ std::string set_up_words(const diagnose::NextSetUp& set_up) {
   return fmt::format("Tilt the track to {:.1f}°", set_up.alpha_rad / base::kRadPerDegree);
 }
 
+/// "535 g"; where nobody states a mass, "the same mass" or "0.6 times the mass".
+std::string mass_words(double mass_kg, bool assumed) {
+  if (assumed) return mass_kg == 1.0 ? "the same mass" : base::number_text(mass_kg, 2) + " times the mass";
+  return mass_kg < 1.0 ? base::digits_text(1000.0 * mass_kg, 3) + " g" : base::digits_text(mass_kg, 3) + " kg";
+}
+
 /// An instruction: "Record a launch uphill at 1.2 m/s with 535 g".
 std::string change_words(const Change& change) {
   const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
@@ -75,14 +81,13 @@ std::string change_words(const Change& change) {
                                 : fmt::format("a launch {} at {:.2g} m/s", direction_words(change), std::abs(v0));
     const std::string record = change.set_up ? set_up_words(*change.set_up) + " and record" : "Record";
     launch = change.falls ? "Record a fall" : record + " " + how;
-    const double mass_kg = change.clip->mass_kg;
-    mass = mass_kg < 1.0 ? base::digits_text(1000.0 * mass_kg, 3) + " g" : base::digits_text(mass_kg, 3) + " kg";
+    mass = mass_words(change.clip->mass_kg, change.mass_assumed);
   }
   switch (change.kind) {
     case ChangeKind::launch:
       return fmt::format("{}{} with {}", launch, on, mass);
     case ChangeKind::mass:
-      return fmt::format("{}{} with the mass changed to {}", launch, on, mass);
+      return fmt::format("{}{} with {}{}", launch, on, change.mass_assumed ? "" : "the mass changed to ", mass);
     case ChangeKind::inclination:
       return fmt::format("{} with {}", launch, mass);
     case ChangeKind::frame_rate:
@@ -211,9 +216,9 @@ struct Words {
 
   std::string operator()(const diagnose::AddMass& of) const {
     return fmt::format(
-        "Record a further mass of {:.0f} g both ways, and the lightest one again: what depends on the mass then has a "
+        "Record {} both ways, and the lightest one again: what depends on the mass then has a "
         "third point on its curve; what differed by chance does not recur.",
-        1000.0 * of.mass_kg);
+        of.assumed ? mass_words(of.mass_kg, true) : fmt::format("a further mass of {:.0f} g", 1000.0 * of.mass_kg));
   }
 
   std::string operator()(const diagnose::RecordForEffect& of) const {

@@ -178,6 +178,13 @@ bool is_uncertain(const diagnose::Diagnosis& diagnosis) {
   });
 }
 
+/// "the nominal model explains them to within their noise"
+std::string floor_words(const diagnose::Diagnosis& diagnosis, const std::string& of) {
+  return leaves_noise_alone(diagnosis)
+             ? "the nominal model explains " + of + " to within their noise"
+             : "what the nominal model leaves of " + of + " is more than their noise, but not clearly";
+}
+
 std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + clip_gap_words(diagnosis);
@@ -196,17 +203,21 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   constexpr double kRather = 0.5;  // the probability from which nothing is rather missing than something
   if (diagnosis.verdict == diagnose::Verdict::none && diagnosis.none < kRather && !diagnosis.ranking.empty()) {
     return fmt::format(
-               "The nominal model explains these data to within their noise. They cannot exclude other causes, but "
-               "no known effect is as likely as nothing being missing ({}); the likeliest is {} ({}).",
-               percent(diagnosis.none), explanation_name(diagnosis.ranking.front().explanation),
+               "{}. They cannot exclude other causes, but no known effect is as likely as nothing being missing ({}); "
+               "the likeliest is {} ({}).",
+               capital(floor_words(diagnosis, "these data")), percent(diagnosis.none),
+               explanation_name(diagnosis.ranking.front().explanation),
                percent(diagnosis.ranking.front().probability)) +
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::none) {
-    return fmt::format(
-               "As far as these data can show, nothing is missing ({}): the nominal model explains them to within "
-               "their noise.",
-               percent(diagnosis.none)) +
+    return fmt::format("As far as these data can show, nothing is missing ({}): {}.", percent(diagnosis.none),
+                       floor_words(diagnosis, "them")) +
+           clip_gap_words(diagnosis);
+  }
+  if (diagnosis.verdict == diagnose::Verdict::unknown && is_at_floor(diagnosis) && diagnosis.limits.set_aside &&
+      diagnosis.limits.set_aside->is_large()) {
+    return "Whether anything is missing is not known: the other positions alone do not show it." +
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <random>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "tests/catch.h"
@@ -66,6 +67,22 @@ double run(double t_s) {
 TEST_CASE("a run along an incline and a fall are plausible") {
   CHECK(findings(positions(run)).empty());
   CHECK(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; }), 90.0).empty());
+}
+
+TEST_CASE("a fall over a long way whose acceleration is that of gravity is in metres, a steady one may not be") {
+  const auto fall = [](double of_gravity) {
+    return [of_gravity](double t) { return 15.0 * t + 0.5 * of_gravity * kGravity_m_s2 * t * t; };
+  };
+  for (const double of_gravity : {0.4, 0.93, 1.0}) {
+    CAPTURE(of_gravity);
+    CHECK(findings(positions(fall(of_gravity)), 90.0).empty());
+  }
+  for (const double of_gravity : {0.0, 0.2}) {
+    CAPTURE(of_gravity);
+    const std::vector<core::Finding> found = findings(positions(fall(of_gravity)), 90.0);
+    REQUIRE(found.size() == 1);
+    CHECK(std::holds_alternative<core::found::LongRun>(found[0].found));
+  }
 }
 
 TEST_CASE("x in centimetres or millimetres makes accelerations that no incline has") {

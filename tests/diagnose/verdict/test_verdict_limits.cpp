@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 #include "base/errors.h"
@@ -12,6 +13,8 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
 #include "diagnose/verdict/settled_motions.h"
+#include "diagnose/verdict/verdict.h"
+#include "diagnose/weigh/hypotheses.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 #include "tests/temp_dir.h"
@@ -198,6 +201,23 @@ TEST_CASE("if a tenth of the motion is set aside, the reader is told how much") 
   set.left_out = 190;
   for (diagnose::TrackedMotion& motion : set.motions) std::fill_n(motion.outlier.begin(), motion.t_s.size() / 20, 1);
   CHECK(std::abs(diagnose::limits_of(set, fit).set_aside.value().part - 0.2305) < 0.001);
+}
+
+TEST_CASE("where a third of the motion is set aside, the rest does not show that nothing is missing") {
+  const auto made = tests::made_experiment(inclined_launches(), {}, 5, 3e-5, 60);
+  diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::Comparison comparison = diagnose::compare_hypotheses(set, {}, 2);
+  set.moving = 1000;
+  for (const auto& [left_out, verdict] :
+       {std::pair(320u, diagnose::Verdict::none), std::pair(340u, diagnose::Verdict::unknown)}) {
+    CAPTURE(left_out);
+    set.left_out = left_out;
+    const diagnose::Diagnosis diagnosis = diagnose::verdict_of(set, comparison, {});
+    CHECK(diagnosis.verdict == verdict);
+    CHECK(diagnosis.regions.empty());
+    REQUIRE(diagnosis.gap);
+    CHECK(diagnosis.gap->after == diagnosis.gap->before);
+  }
 }
 
 TEST_CASE("too little motion is reported clip by clip, with the files") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
@@ -32,6 +33,23 @@ TEST_CASE("a scale or a clock that is far off is rarer than one that is nearly r
   CHECK(log_odds(diagnose::ids::late_release, 0.1) == Approx(-std::log(1.25)));  // two tenths of a second are usual
   CHECK(log_odds(diagnose::ids::late_release, 0.4) == Approx(-std::log(5.0)));
   CHECK(log_odds(diagnose::ids::quadratic_drag, 0.3) == 0.0);
+}
+
+TEST_CASE("a bumper or a cable that touches everywhere or nowhere is at the end of its range") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::ParameterRange places = diagnose::range_of_places(set);
+  for (const std::string_view id : {diagnose::ids::tether, diagnose::ids::end_stop}) {
+    const std::size_t effect = diagnose::effect_index(id);
+    const auto ends = [&](double place_m) {
+      const diagnose::FitPoint at = diagnose::with_effect(set, nominal, effect, {0.01, place_m}, {});
+      return diagnose::effects_at_end(diagnose::linearise_at(set, {effect}, at));
+    };
+    CHECK(ends(places.low) == std::vector<std::size_t>{effect});
+    CHECK(ends(places.high) == std::vector<std::size_t>{effect});
+    CHECK(ends(0.3 * places.low + 0.7 * places.high).empty());
+  }
 }
 
 TEST_CASE("the axis of a lens is rarer at an end of the motion than in its middle") {

@@ -41,6 +41,14 @@ TEST_CASE("a change is an order with its numbers in units that people use") {
   other.on = "flat";
   CHECK(words_for(other).starts_with(
       "Record a launch downhill at 2.2 m/s on set-up \"flat\" with the mass changed to 856 g:"));
+  // 1 kg stands for a mass that nobody states.
+  diagnose::Change lighter = launch(ChangeKind::mass, 0.1, 0.6);
+  lighter.falls = lighter.mass_assumed = true;
+  CHECK(words_for(lighter).starts_with("Record a fall with 0.6 times the mass: of"));
+  lighter.kind = ChangeKind::launch;
+  lighter.clip->mass_kg = 1.0;
+  CHECK(words_for(lighter).starts_with("Record a fall with the same mass: of"));
+  CHECK(report::next_step_words(diagnose::AddMass{1.6, true}).starts_with("Record 1.6 times the mass both ways"));
   diagnose::Change tilted = launch(ChangeKind::inclination, 1.2, 0.5);
   tilted.set_up = diagnose::NextSetUp{0.10472, 0.0};
   CHECK(words_for(tilted).starts_with("Tilt the track to 6.0° and record a launch downhill at 1.2 m/s with 500 g: of"));

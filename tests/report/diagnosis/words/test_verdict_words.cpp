@@ -173,6 +173,40 @@ TEST_CASE("where much of the motion is set aside, the summary begins with it") {
   CHECK(contains(report::verdict_words(of), "nothing is missing"));
 }
 
+TEST_CASE("a third of the motion set aside leaves the question open, with what to state") {
+  diagnose::Diagnosis of = with_incline(1.0);
+  of.limits = {};
+  of.limits.set_aside = diagnose::SetAside{101, 0.49};
+  of.unknown = 1.0;
+  const std::string words = report::verdict_words(of);
+  CHECK(contains(words, "49 % are excluded"));
+  CHECK(contains(words, "start_s"));
+  CHECK(contains(words, "Whether anything is missing is not known"));
+  CHECK_FALSE(contains(words, "holds for the rest"));
+  CHECK_FALSE(contains(words, "none of the known effects"));
+}
+
+TEST_CASE("only a gap that noise alone makes by chance is within the noise") {
+  diagnose::Diagnosis of;
+  of.verdict = diagnose::Verdict::none;
+  of.gap.emplace();
+  of.gap->standard_error = 0.12;
+  for (const double probability : {0.34, 0.8}) {
+    of.none = probability;
+    of.ranking = {{{{"eddy_rolloff"}}, 0.2, 1.0, 1.0, 1, {}}};
+    of.gap->before = of.gap->after = 1.1;
+    CHECK(contains(report::verdict_words(of), "to within their noise"));
+    of.gap->before = of.gap->after = 1.49;
+    CHECK_FALSE(contains(report::verdict_words(of), "to within their noise"));
+    CHECK(contains(report::verdict_words(of), "hat the nominal model leaves of the"));
+    CHECK(contains(report::verdict_words(of), "is more than their noise, but not clearly"));
+  }
+  of.traces = {"position_rounding"};
+  CHECK_FALSE(contains(report::verdict_words(of), "Nothing that matters is missing"));
+  of.gap->before = of.gap->after = 1.1;
+  CHECK(contains(report::verdict_words(of), "Nothing that matters is missing"));
+}
+
 TEST_CASE("a size far beyond what the accelerations lack is not stated as one") {
   diagnose::Diagnosis diagnosis;
   diagnosis.verdict = diagnose::Verdict::unknown;
