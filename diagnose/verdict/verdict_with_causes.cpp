@@ -319,7 +319,8 @@ bool VerdictWithCauses::viscous_leaves_less() const {
 
 /// The least probability of an unknown cause, by the sizes of what is named.
 double VerdictWithCauses::least_unknown() const {
-  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_);
+  const bool leads = !names_ || !sequence_.is_gap || by_air_ || may_lead(sized_, by(), sequence_);
+  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_) || !leads;
   return doubtful ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 
