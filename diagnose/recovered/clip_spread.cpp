@@ -12,9 +12,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastKnown = 1e-3;     // of the prior's information: a direction with less is open
+constexpr double kLeastKnown = 1e-3;      // of the prior's information: a direction with less is open
 constexpr double kLeastOfLargest = 1e-9;  // of the largest information
-constexpr double kBelow = 0.1;           // probability of a chi² as low as that of the upper limit
+constexpr double kBelow = 0.1;            // probability of a chi² as low as that of the upper limit
 
 /// What the data say along one direction of the values: y with its variance, and the part of the mean in it.
 struct Direction {
