@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,10 +24,19 @@ constexpr double kLeftPower = 0.5;  // of the part that is left, where the noise
 constexpr double kNoClipHeldOut = -1.0;                   // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
-/// The remainder of the nominal model contains friction and drag of each clip too, so clip scatter has at least its
-/// evidence.
-bool is_clip_scatter(const Hypothesis& hypothesis) {
-  return hypothesis.effects == std::vector<std::size_t>{effect_index(ids::clip_scatter)};
+/// The log evidence that counts. Every remainder contains friction and drag of each clip too, so that with clip scatter
+/// an explanation has at least the evidence that it has without.
+double evidence_of(const Hypothesis& one, const std::vector<Hypothesis>& all) {
+  const std::size_t scatter = effect_index(ids::clip_scatter);
+  if (!has(one, scatter)) return one.log_evidence;
+  std::set<std::size_t> others(one.effects.begin(), one.effects.end());
+  others.erase(scatter);
+  double most = others.empty() && !one.unnamed ? std::max(one.log_evidence, 0.0) : one.log_evidence;
+  for (const Hypothesis& other : all) {
+    const bool same = other.unnamed == one.unnamed && std::set(other.effects.begin(), other.effects.end()) == others;
+    if (same && (other.fit > 0 || others.empty())) most = std::max(most, other.log_evidence);
+  }
+  return most;
 }
 
 double part_left(double left, double before) {
@@ -103,8 +113,7 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   std::vector<double> logs;
   for (const SameCauses& group : groups) {
     const Hypothesis& one = all[group.plain];
-    const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
-    double log = tempered(best - evidence);
+    double log = tempered(best - evidence_of(one, all));
     if (no_noise) {
       log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
       log -= kLeftPower * std::log(std::max(*one.left, 1.0 / kLargestExcess));

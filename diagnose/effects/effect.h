@@ -351,6 +351,7 @@ struct Circumstances {
   std::size_t clips = 0;
   bool only_falls = false;   ///< every inclination is 80 degrees or more
   bool through_air = false;  ///< falls faster than any viscous drag allows (tracks/tracked_motions.h)
+  double loads = 1.0;        ///< the largest normal force over the smallest, of the motions
 };
 
 /// What the program knows about one effect: its names and words, its parameters and their ranges, its law, its change

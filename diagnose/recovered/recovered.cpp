@@ -16,6 +16,7 @@
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/recovered/clip_spread.h"
 #include "diagnose/recovered/scale_place.h"
 #include "diagnose/weigh/unknown_noise.h"
 
@@ -113,20 +114,19 @@ TrackModel model_of_all(const TrackSet& set, const ParameterLayout& layout, cons
   return model;
 }
 
-/// The variance with which clips differ in one of their own parameters, beyond what their fits leave open.
-double variance_between(const ParameterLayout& layout, const EffectSlot& slot, const Eigen::VectorXd& at,
-                        const Eigen::MatrixXd& covariance) {
+/// How far clips differ in one of their own parameters.
+ClipSpread spread_in(const ParameterLayout& layout, const EffectSlot& slot, const Eigen::VectorXd& at,
+                     const Eigen::MatrixXd& covariance) {
   std::vector<Eigen::Index> of;
+  double prior_sd = 0.0;
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const ParameterLayout::Global& global = layout.globals()[g];
-    if (global.parameter != nullptr && global.parameter->slot == slot) of.push_back(static_cast<Eigen::Index>(g));
+    if (global.parameter == nullptr || !(global.parameter->slot == slot)) continue;
+    of.push_back(static_cast<Eigen::Index>(g));
+    prior_sd = global.parameter->held_sd;
   }
-  const auto n = static_cast<double>(of.size());
-  if (of.size() < 2) return 0.0;
-  const Eigen::VectorXd own = at(of);
-  const Eigen::MatrixXd open = covariance(of, of);
-  const double squares = (own.array() - own.mean()).square().sum();
-  return std::max(0.0, (squares - (open.trace() - open.sum() / n)) / (n - 1.0));
+  if (of.size() < 2) return {};
+  return clip_spread(at(of), covariance(of, of), prior_sd);
 }
 
 /// Whether a common parameter stopped at the edge of its range.
@@ -160,10 +160,33 @@ void allow_for_drift(RecoveredSet& of, double drift_m_s, double slope_1_s, doubl
 }
 
 std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
-  const RemainderSpace space(set, fit);
-  const RemainderSpace::Solution solution = space.solve(sizes);
+  RemainderSpace::Solution solution = RemainderSpace(set, fit).solve(sizes);
   FitPoint at = fit.at;
   at.global += solution.change;
+  // The mean of clips that differ is that of the configuration to within their scatter over the root of their number.
+  const auto& globals = fit.layout->globals();
+  Eigen::VectorXd between_own = Eigen::VectorXd::Zero(at.global.size());
+  MotionFit narrowed;
+  for (const EffectSlot& slot : {kOwnFriction, kOwnDrag}) {
+    const ClipSpread spread = spread_in(*fit.layout, slot, at.global, solution.covariance);
+    if (!(spread.most > 0.0)) continue;
+    if (narrowed.layout == nullptr) narrowed = fit;
+    for (std::size_t g = 0; g < globals.size(); ++g) {
+      const bool is_own = globals[g].parameter != nullptr && globals[g].parameter->slot == slot;
+      if (is_own) between_own[static_cast<Eigen::Index>(g)] = spread.variance;
+    }
+    for (FitStatement& s : narrowed.statements) {
+      const ParameterLayout::Global& of_statement = globals[s.global];
+      const bool is_own = of_statement.parameter != nullptr && of_statement.parameter->slot == slot;
+      if (is_own && !s.held) s.sd = std::sqrt(spread.most);
+    }
+  }
+  // Clips that differ by little cannot stand for an inclination that is far off.
+  const bool is_narrowed = narrowed.layout != nullptr;
+  if (is_narrowed) {
+    solution = RemainderSpace(set, narrowed).solve(sizes);
+    at.global = fit.at.global + solution.change;
+  }
   // The degrees of freedom of the scatter from motion to motion are the motions less one, those of the scores the clips
   // less one, those of the noise of few positions theirs.
   const bool scatters = sizes.force_m_s2 > 0.0 || sizes.drag > 0.0;
@@ -178,16 +201,6 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     const Eigen::VectorXd along = base::product(covariance, by);
     return std::sqrt(std::max(0.0, by.dot(along)));
   };
-  const auto& globals = fit.layout->globals();
-  // The mean of clips that differ is that of the configuration to within their scatter over the root of their number.
-  Eigen::VectorXd between_own = Eigen::VectorXd::Zero(at.global.size());
-  for (const EffectSlot& slot : {kOwnFriction, kOwnDrag}) {
-    const double variance = variance_between(*fit.layout, slot, at.global, solution.covariance);
-    for (std::size_t g = 0; g < globals.size(); ++g) {
-      const bool is_own = globals[g].parameter != nullptr && globals[g].parameter->slot == slot;
-      if (is_own) between_own[static_cast<Eigen::Index>(g)] = variance;
-    }
-  }
   std::vector<RecoveredSet> all;
   for (const auto& [of, motions] : motions_of_configurations(set)) {
     // The derivatives of a quantity with respect to the common parameters, by finite differences.
@@ -211,7 +224,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       const double own = std::sqrt(by.cwiseAbs2().dot(between_own));
       one.value = value;
       one.sd = std::hypot(std::max(model, between), own) * scale;
-      one.degrees = std::min(std::max(between, own) > model ? of_clips : of_motions, of_noise);
+      one.degrees = std::min(is_narrowed || std::max(between, own) > model ? of_clips : of_motions, of_noise);
       one.known = std::isfinite(one.value) && std::isfinite(one.sd);
       return one;
     };

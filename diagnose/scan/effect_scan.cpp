@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -122,11 +123,30 @@ double seen_square(const ScoreSpace& space, const ScoreColumn& column) {
   return derived ? std::max(0.0, square) : 0.0;
 }
 
+namespace {
+
+/// The largest normal force over the smallest. In a fall without one, mu is no parameter that another friction could be
+/// a part of.
+double ratio_of_loads(const TrackSet& set) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  if (only_falls(set)) return least;
+  for (const TrackedMotion& motion : set.motions) {
+    const double load_kg = set.masses[motion.mass].mass_kg * std::abs(std::cos(set.groups[motion.group].stated_rad));
+    least = std::min(least, load_kg);
+    most = std::max(most, load_kg);
+  }
+  return most / least;
+}
+
+}  // namespace
+
 double prior_odds(const TrackSet& set, std::size_t effect) {
   const auto odds = effect_list()[effect].odds;
-  return odds == nullptr
-             ? 1.0
-             : odds({.clips = set.clips.size(), .only_falls = only_falls(set), .through_air = set.through_air});
+  return odds == nullptr ? 1.0
+                         : odds({.clips = set.clips.size(),
+                                 .only_falls = only_falls(set),
+                                 .through_air = set.through_air,
+                                 .loads = ratio_of_loads(set)});
 }
 
 namespace {

@@ -117,7 +117,8 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
   return renamed != nullptr ? renamed : fitted(likely);
 }
 
-bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
+bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects,
+                      double least_sd) {
   constexpr double kByChance = 0.01;  // that sizes which are all 0 are together so far from it
   const SizeUncertainty uncertainty(set, fit);
   const auto& globals = fit.layout->globals();
@@ -135,7 +136,7 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
         continue;
       }
       if (!is_size || globals[g].parameter->each != Each::experiment) continue;
-      if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
+      if (std::abs(fit.at.global[at]) > least_sd * uncertainty.sd(at)) return true;
       has_common = true;
     }
     if (!several.empty() && !follows_each_clip(e)) {
@@ -267,6 +268,24 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
   if (most <= of_named + kClearlyLikelier || !shows_in_motion(effect_list()[likeliest].search)) return nullptr;
   const Hypothesis* alone = find(comparison, {likeliest});
   return alone != nullptr && alone->fit > 0 ? alone : nullptr;
+}
+
+bool has_evidence(const Comparison& comparison, std::size_t effect, bool filmed) {
+  if (differs_between_clips(effect)) return true;  // the nominal remainder contains it
+  return std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& one) {
+    return !one.unnamed && one.log_evidence > 0.0 && std::any_of(one.effects.begin(), one.effects.end(), [&](auto e) {
+      return e == effect || are_alike(comparison, e, effect, filmed);
+    });
+  });
+}
+
+bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const CauseSequence& sequence) {
+  constexpr double kClearOfZero = 2.0;  // standard deviations
+  const std::vector<std::size_t>& named = sequence.named.effects;
+  if (named.empty() || (!sequence.causes.empty() && sequence.causes.front().id == ids::dropped_frames)) return true;
+  const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
+  return (no_noise || has_evidence(comparison, named.front(), sized.set.images)) &&
+         has_certain_size(sized.set, sized.fit, {named.front()}, kClearOfZero);
 }
 
 const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best) {

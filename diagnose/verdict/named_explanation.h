@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/remainder.h"
 #include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
@@ -27,10 +28,11 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
 /// the names that these data cannot tell apart. Null if these are all causes of `best`, or if no fit has them alone.
 const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
-/// Whether the size of one of these effects of a fit is larger than its standard deviation, or whether the several
+/// Whether the size of one of these effects of a fit is larger than so many standard deviations, or whether the several
 /// sizes of one (at several places, of each configuration) are together farther from 0 than chance brings them in one
 /// of 100 cases. Sizes that clips do not have in common are not looked at and count as certain.
-bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects);
+bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects,
+                      double least_sd = 1.0);
 
 /// Whether an effect is a function of the place, whose many sizes follow nearly any motion, and all of them may as well
 /// be 0.
@@ -56,6 +58,14 @@ const Hypothesis* part_with_sizes(const TrackSet& set, const MotionFit& fit, con
 /// already, or if no fit has it alone.
 const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
                                      const CauseSequence& sequence);
+
+/// Whether some explanation by an effect, or by one that no track can tell from it, has more evidence than the nominal
+/// model. What differs from clip to clip needs none: the remainder of the nominal model contains it.
+bool has_evidence(const Comparison& comparison, std::size_t effect, bool filmed);
+
+/// Whether a verdict may rest on the first named cause of a sequence: it has evidence, unless the noise is negligible,
+/// and its size in the fit that is stated differs from 0 by two standard deviations.
+bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const CauseSequence& sequence);
 
 /// The explanation by the causes that keep their name in a sequence; `best` if it was not weighed by itself.
 const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best);

@@ -298,8 +298,9 @@ void VerdictWithCauses::size_causes() {
 
 /// The least probability of an unknown cause, by the sizes of what is named.
 double VerdictWithCauses::least_unknown() const {
+  const bool leads = !names_ || !sequence_.is_gap || by_air_ || may_lead(sized_, by(), sequence_);
   const bool leaves_much = open_size_ && sequence_.gap_after > kFollowed;
-  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_) || leaves_much;
+  const bool doubtful = impossible_ || !empty_.empty() || may_take_nothing(sequence_) || leaves_much || !leads;
   return doubtful ? kUnknownIfLess : open_size_ ? kOpenSize : 0.0;
 }
 

@@ -13,6 +13,12 @@ void fixed_friction(const double* p, const GliderConstants&, const GliderState&,
   of.force_n += p[0];
 }
 
+/// Under one load it is a part of mu. With loads that differ by the factor q, F_0 is known to sd(mu N) q/(q - 1).
+double of_several_loads(const Circumstances& of) {
+  constexpr double kLeastRatio = 1.05;
+  return of.loads < kLeastRatio ? 0.0 : touched(of);
+}
+
 /// a0 - s F_0/m, s the direction.
 LineChange fixed_friction_lines(const LineQuantities& line) {
   return {0.0, -line.direction / line.mass_kg};
@@ -40,7 +46,7 @@ EffectInfo load_independent_friction() {
       .mirror = {},
       .among_clips = {},
       .point_scatter = {},
-      .odds = touched,
+      .odds = of_several_loads,
       .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "force_n", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-7, .reach = Reach::with_mass}},

@@ -235,3 +235,24 @@ TEST_CASE("each explanation says which part of the excess it leaves") {
     CHECK(*one.left == Approx(one.fit == 1 ? 0.25 : 1.0));
   }
 }
+
+TEST_CASE(
+    "with clips that scatter an explanation has the evidence that it has without, since every remainder scatters") {
+  // The odds of a bow with clip scatter against those of clip scatter alone. Both leave nothing.
+  const auto odds = [](double with_scatter) {
+    diagnose::Comparison comparison = comparison_of(-1000.0, 0.0, 40.0);
+    const std::size_t scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
+    comparison.all[2].effects = {scatter};
+    comparison.all.push_back({{comparison.all[3].effects.front(), scatter}, false, 0.0, with_scatter, 0.0, 3});
+    comparison.fits.resize(4);
+    diagnose::weigh_beside_remainder({{10.0, 0.0, 9.0, 0.0}, kNotMeasured}, comparison);
+    double pair = 0.0, alone = 0.0;
+    for (const diagnose::Hypothesis& one : comparison.all) {
+      if (one.fit == 3) pair = one.probability;
+      if (one.fit == 1) alone = one.probability;
+    }
+    return pair / alone;
+  };
+  CHECK(odds(-20.0) == Approx(odds(40.0)).epsilon(1e-9));
+  CHECK(odds(-20.0) == Approx(std::pow(1.0 + 40.0 / 5.0, 2.45)).epsilon(1e-6));
+}

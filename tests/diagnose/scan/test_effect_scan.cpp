@@ -103,4 +103,9 @@ TEST_CASE("prior odds follow the recording: a falling object is braked by the sq
     CHECK(odds({fall, slope, slope}, id) == 1.0);
   }
   CHECK(odds({slope, slope}, "friction_drift") == 0.0);
+  // Under one load a friction that does not depend on it is a part of mu: cos(2 deg) and cos(4 deg) differ by 0.2 %.
+  const tests::MadeLaunch low{0.4, 2.0, -0.5, 1.0}, steep{0.4, 4.0, -0.5, 1.0}, heavier{0.5, 4.0, -0.5, 1.0};
+  CHECK(odds({low, steep, low}, "load_independent_friction") == 0.0);
+  CHECK(odds({low, steep, heavier}, "load_independent_friction") == 1.0);
+  CHECK(odds({low, slope, low}, "load_independent_friction") == 1.0);
 }

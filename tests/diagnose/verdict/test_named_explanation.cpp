@@ -267,3 +267,32 @@ TEST_CASE("the ranking falls by probability, in whatever order the hypotheses we
   CHECK(order == std::vector<std::string>{std::string(ids::quadratic_drag), std::string(ids::track_bow),
                                           std::string(ids::rotational_inertia), std::string(ids::place_friction)});
 }
+
+TEST_CASE("no verdict rests on a name with less evidence than the nominal model, nor on a size that may be 0") {
+  Named named;
+  named.add({"quadratic_drag"}, true, 0.5);
+  named.add({"track_bow"}, true, 0.3);
+  diagnose::Hypothesis& drag = named.comparison.all.front();
+  drag.log_evidence = -2.9;
+  const auto may_lead = [&](double gap, double sds) {
+    diagnose::CauseSequence sequence;
+    sequence.gap_before = gap;
+    sequence.named = named.comparison.fits[1];
+    const auto size = static_cast<Eigen::Index>(sequence.named.layout->first_of(kDrag));
+    sequence.named.at.global[size] = sds * diagnose::SizeUncertainty(named.set, sequence.named).sd(size);
+    return diagnose::may_lead({named.set, sequence.named}, named.comparison, sequence);
+  };
+  CHECK_FALSE(may_lead(2.0, 10.0));
+  CHECK(may_lead(1e4, 10.0));  // where the noise is negligible, evidence says nothing
+  drag.log_evidence = 0.3;
+  CHECK(may_lead(2.0, 10.0));
+  CHECK(may_lead(2.0, -2.1));
+  CHECK_FALSE(may_lead(2.0, 1.9));
+  // With another effect the name may have the evidence that it has not alone.
+  drag.log_evidence = -2.9;
+  named.comparison.all[1].effects.push_back(kDrag);
+  CHECK(may_lead(2.0, 10.0));
+  // The remainder of the nominal model contains clips that scatter: they need none.
+  CHECK(diagnose::has_evidence({}, diagnose::effect_index(diagnose::ids::clip_scatter), false));
+  CHECK_FALSE(diagnose::has_evidence({}, kDrag, false));
+}
