@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "report/diagnosis/cause_waterfall.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/html/html.h"
 #include "tests/catch.h"
