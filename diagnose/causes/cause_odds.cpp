@@ -24,13 +24,14 @@ constexpr double kLeftPower = 0.5;  // of the part that is left, where the noise
 constexpr double kNoClipHeldOut = -1.0;                   // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
-/// The log evidence that counts. Every remainder contains friction and drag of each clip too, so that with clip scatter
-/// an explanation has at least the evidence that it has without.
-double evidence_of(const Hypothesis& one, const std::vector<Hypothesis>& all) {
+/// The log evidence that counts. Every remainder contains friction and drag of each clip too, so that clip scatter has
+/// at least the evidence of the nominal model, and beside a cause known by stated inclinations that of this cause.
+double evidence_of(const Hypothesis& one, const std::vector<Hypothesis>& all, const std::set<std::size_t>& by_stated) {
   const std::size_t scatter = effect_index(ids::clip_scatter);
   if (!has(one, scatter)) return one.log_evidence;
   std::set<std::size_t> others(one.effects.begin(), one.effects.end());
   others.erase(scatter);
+  if (!std::ranges::all_of(others, [&](std::size_t e) { return by_stated.contains(e); })) return one.log_evidence;
   double most = others.empty() && !one.unnamed ? std::max(one.log_evidence, 0.0) : one.log_evidence;
   for (const Hypothesis& other : all) {
     const bool same = other.unnamed == one.unnamed && std::set(other.effects.begin(), other.effects.end()) == others;
@@ -113,7 +114,7 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   std::vector<double> logs;
   for (const SameCauses& group : groups) {
     const Hypothesis& one = all[group.plain];
-    double log = tempered(best - evidence_of(one, all));
+    double log = tempered(best - evidence_of(one, all, comparison.by_stated));
     if (no_noise) {
       log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
       log -= kLeftPower * std::log(std::max(*one.left, 1.0 / kLargestExcess));

@@ -11,14 +11,15 @@
 ///
 /// where E is the excess of the nominal model, limited to 0.1 to 10 in this formula. A constant is subtracted for a
 /// function without a name beside the explanation, for a hand that lets go late and for clips that scatter, since these
-/// adapt to each clip. With clips that scatter an explanation has at least the evidence that it has without, and
-/// scatter alone that of the nominal model, since every remainder contains the same scatter. A function without a name
-/// that stands alone is weighed by what it leaves, like a cause, less a constant of its own because it can be almost
-/// anything; if it leaves nearly all of the excess, only its evidence counts. The terms reflect that small
-/// imperfections seldom make more than three tenths of an excess, that a wrong cause seldom leaves as little as the
-/// right one, and that a large excess seldom comes from small imperfections alone. The constants make the true causes
-/// of simulated experiments likeliest (blind --everyday); docs/evidence/blind-everyday.md says how they were found, and
-/// how well they hold on other experiments.
+/// adapt to each clip. Clips that scatter have at least the
+/// evidence of the nominal model, whose remainder contains the same scatter, and beside a cause that stated
+/// inclinations show that of this cause; beside others this would count scatter once for each of them. A function
+/// without a name that stands alone is weighed by what it leaves, like a cause, less a constant of its own because it
+/// can be almost anything; if it leaves nearly all of the excess, only its evidence counts. The terms reflect that
+/// small imperfections seldom make more than three tenths of an excess, that a wrong cause seldom leaves as little as
+/// the right one, and that a large excess seldom comes from small imperfections alone. The constants make the true
+/// causes of simulated experiments likeliest (blind --everyday); docs/evidence/blind-everyday.md says how they were
+/// found, and how well they hold on other experiments.
 ///
 /// In a fall through air the drag of air takes nearly all of the excess of a fall without drag, so that r would not
 /// tell what a further cause does. It counts in two steps there: the drag by what it leaves of a fall without drag, and

@@ -284,8 +284,11 @@ bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const 
   const std::vector<std::size_t>& named = sequence.named.effects;
   if (named.empty() || (!sequence.causes.empty() && sequence.causes.front().id == ids::dropped_frames)) return true;
   const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
-  return (no_noise || has_evidence(comparison, named.front(), sized.set.images)) &&
-         has_certain_size(sized.set, sized.fit, {named.front()}, kClearOfZero);
+  return std::any_of(named.begin(), named.end(), [&](std::size_t e) {
+    if (e != named.front() && differs_between_clips(e)) return false;  // beside a law scatter proves nothing
+    return (no_noise || has_evidence(comparison, e, sized.set.images)) &&
+           has_certain_size(sized.set, sized.fit, {e}, kClearOfZero);
+  });
 }
 
 const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best) {

@@ -236,15 +236,15 @@ TEST_CASE("each explanation says which part of the excess it leaves") {
   }
 }
 
-TEST_CASE(
-    "with clips that scatter an explanation has the evidence that it has without, since every remainder scatters") {
+TEST_CASE("beside clips that scatter a cause that statements show has the evidence that it has without them") {
   // The odds of a bow with clip scatter against those of clip scatter alone. Both leave nothing.
-  const auto odds = [](double with_scatter) {
+  const auto odds = [](double with_scatter, bool by_stated) {
     diagnose::Comparison comparison = comparison_of(-1000.0, 0.0, 40.0);
     const std::size_t scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
     comparison.all[2].effects = {scatter};
     comparison.all.push_back({{comparison.all[3].effects.front(), scatter}, false, 0.0, with_scatter, 0.0, 3});
     comparison.fits.resize(4);
+    if (by_stated) comparison.by_stated = {diagnose::effect_index(diagnose::ids::track_bow)};
     diagnose::weigh_beside_remainder({{10.0, 0.0, 9.0, 0.0}, kNotMeasured}, comparison);
     double pair = 0.0, alone = 0.0;
     for (const diagnose::Hypothesis& one : comparison.all) {
@@ -253,6 +253,7 @@ TEST_CASE(
     }
     return pair / alone;
   };
-  CHECK(odds(-20.0) == Approx(odds(40.0)).epsilon(1e-9));
-  CHECK(odds(-20.0) == Approx(std::pow(1.0 + 40.0 / 5.0, 2.45)).epsilon(1e-6));
+  CHECK(odds(-20.0, true) == Approx(odds(40.0, true)).epsilon(1e-9));
+  CHECK(odds(-20.0, true) == Approx(std::pow(1.0 + 40.0 / 5.0, 2.45)).epsilon(1e-6));
+  CHECK(odds(-20.0, false) == Approx(std::pow((1.0 + 40.0 / 5.0) / (1.0 + 60.0 / 5.0), 2.45)).epsilon(1e-6));
 }
