@@ -284,7 +284,14 @@ bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const 
   const std::vector<std::size_t>& named = sequence.named.effects;
   if (named.empty() || (!sequence.causes.empty() && sequence.causes.front().id == ids::dropped_frames)) return true;
   const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
+  const auto takes_little = [&](std::size_t e) {
+    constexpr double kLittle = 0.1;  // of the gap
+    return std::ranges::any_of(sequence.causes, [&](const ExplainedCause& cause) {
+      return cause.id == effect_list()[e].id && cause.share < kLittle;
+    });
+  };
   return std::any_of(named.begin(), named.end(), [&](std::size_t e) {
+    if (takes_little(e)) return false;
     if (e != named.front() && differs_between_clips(e)) return false;  // beside a law scatter proves nothing
     return (no_noise || has_evidence(comparison, e, sized.set.images)) &&
            has_certain_size(sized.set, sized.fit, {e}, kClearOfZero);

@@ -63,8 +63,8 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
 /// model. What differs from clip to clip needs none: the remainder of the nominal model contains it.
 bool has_evidence(const Comparison& comparison, std::size_t effect, bool filmed);
 
-/// Whether a verdict may rest on the named causes of a sequence: one of them, the first or a law beside it, has
-/// evidence, unless the noise is negligible, and a size in the fit that is stated that differs from 0 by two standard
+/// Whether a verdict may rest on the named causes of a sequence: one of them, the first or a law beside it, takes a
+/// tenth of the gap or more and has evidence, unless the noise is negligible, and a size in the fit that is stated that differs from 0 by two standard
 /// deviations.
 bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const CauseSequence& sequence);
 

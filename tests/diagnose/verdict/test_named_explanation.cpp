@@ -274,8 +274,9 @@ TEST_CASE("no verdict rests on a name with less evidence than the nominal model,
   named.add({"track_bow"}, true, 0.3);
   diagnose::Hypothesis& drag = named.comparison.all.front();
   drag.log_evidence = -2.9;
-  const auto may_lead = [&](double gap, double sds) {
+  const auto may_lead = [&](double gap, double sds, double share = 0.9) {
     diagnose::CauseSequence sequence;
+    sequence.causes.push_back({.id = "quadratic_drag", .share = share});
     sequence.gap_before = gap;
     sequence.named = named.comparison.fits[1];
     const auto size = static_cast<Eigen::Index>(sequence.named.layout->first_of(kDrag));
@@ -288,6 +289,8 @@ TEST_CASE("no verdict rests on a name with less evidence than the nominal model,
   CHECK(may_lead(2.0, 10.0));
   CHECK(may_lead(2.0, -2.1));
   CHECK_FALSE(may_lead(2.0, 1.9));
+  // What takes a trifle of the gap bears no verdict, however well its size is known.
+  CHECK_FALSE(may_lead(2.0, 10.0, 0.05));
   // With another effect the name may have the evidence that it has not alone.
   drag.log_evidence = -2.9;
   named.comparison.all[1].effects.push_back(kDrag);
