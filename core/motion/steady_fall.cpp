@@ -22,6 +22,7 @@ constexpr std::size_t kFewestOfSteady = 5;
 constexpr double kSteady = 0.1;    // of g: the next term of v_lim, (a/g)², is then below half of the laws' difference
 constexpr double kConstant = 0.1;  // of the speed: its change from the first position to the last
 constexpr double kSds = 2.0;
+constexpr double kApproaches = 4.0;  // times v/g: of 1 - v/v_lim, an approach then leaves a fiftieth or less
 
 struct Measured {
   double value = 0.0, variance = 0.0;
@@ -82,8 +83,11 @@ std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2
   if (!(v > 0.0) || !(std::abs(by_g) + kSds * sd_by_g < kSteady)) return {};
   // A liquid drives a body by far less than its weight, so that a small part of g may still change its speed.
   const double gained = std::abs(parabola.a) * span_s;
-  if (std::abs(by_g) > kSds * sd_by_g && gained > kConstant * v) return {};
-  const Measured speed{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2), 0.25 * v * by_g};
+  const bool gains = std::abs(by_g) > kSds * sd_by_g;
+  if (gains && gained > kConstant * v) return {};
+  Measured speed{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2), 0.25 * v * by_g};
+  // An approach to v_lim ends within a few v/g. What lasts longer is another cause, at one end or the other.
+  if (gains && span_s > kApproaches * v / gravity_m_s2) speed.variance += std::pow(0.5 * gained, 2);
   return speed.variance > 0.0 ? std::optional(speed) : std::nullopt;
 }
 

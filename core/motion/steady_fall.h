@@ -17,7 +17,8 @@ namespace glidelab::core {
 ///
 ///     v_lim = v (1 + a/g)    or    v_lim = v (1 + a/(2 g)),
 ///
-/// and half of the difference is an uncertainty that all clips share, as they do the scale and the clock. Clips count
+/// and half of the difference is an uncertainty that all clips share, as they do the scale and the clock. A change of v
+/// that lasts for more than 4 v/g is no approach to v_lim: half of it is a standard deviation of the clip. Clips count
 /// by their inverse variances; where they differ by more than these allow, the standard deviation is larger by the root
 /// of chi²/(n - 1). A body that a liquid bears nearly whole speeds up as little at any speed: `g` is taken as what
 /// drives it. Units are SI.

@@ -31,7 +31,7 @@ TEST_CASE("A target that is within reach ends with status 0, one beyond any sett
   INFO(reached.err);
   CHECK(reached.status == 0);
   CHECK(reached.out.starts_with("Choose "));
-  CHECK(reached.out.substr(0, reached.out.find('\n')).find("expect K/m within") != std::string::npos);
+  CHECK(reached.out.substr(0, reached.out.find('\n')).find("Expect K/m within") != std::string::npos);
   CHECK(fs::exists(easy / "out/report.html"));
   const nlohmann::json within = answer_in(easy / "out");
   for (const nlohmann::json& candidate : within["candidates"]) {
