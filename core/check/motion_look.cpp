@@ -340,7 +340,8 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
              look.noise_m > kLostInNoise * look.distance_m) {
     book.add(Severity::unusable, found::LostInNoise{look.noise_m, look.distance_m});
   } else if (is_at_rest(look)) {
-    book.add(any_moves ? Severity::change : Severity::unusable, found::AtRest{look.spread_m});
+    book.add(any_moves ? Severity::change : Severity::unusable,
+             found::AtRest{look.distance_m > 0.0 ? look.spread_m : 0.0});
   } else if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
   } else if (sure > most || look.speeding_up_m_s2 > kFarAboveGravity * gravity_m_s2) {

@@ -71,7 +71,7 @@ TEST_CASE("a twin has a clip for each motion, from its own start, and says that 
   for (const validate::TwinMotion& motion : validate::twin_motions(diagnosis, 1)) {
     if (!motion.clip.starts_with("clip0")) continue;
     CHECK(motion.clip == (seen++ == 0 ? "clip0" : "clip0-motion-2"));
-    REQUIRE(motion.rest_m.size() > 50);
+    REQUIRE(motion.rest_m.size() > 30);
     double mean = 0.0, square = 0.0;
     for (const double rest_m : motion.rest_m) mean += rest_m / static_cast<double>(motion.rest_m.size());
     for (const double rest_m : motion.rest_m) square += std::pow(rest_m - mean, 2);
@@ -163,7 +163,7 @@ TEST_CASE("a twin with a wrong scale lies on the data beside it, and one without
   const auto rms = [](const diagnose::Diagnosis& diagnosis) {
     double square = 0.0, noise = 0.0;
     for (const validate::TwinMotion& motion : validate::twin_motions(diagnosis, 1)) {
-      REQUIRE(motion.rest_m.size() > 50);
+      REQUIRE(motion.rest_m.size() > 30);
       for (const double x : motion.rest_m) square += x * x;
       for (const double x : motion.noise_m) noise += x * x;
     }
