@@ -283,8 +283,9 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   const MotionFit& nominal = comparison.fits.front();
   diagnosis.limits = limits_of(set, nominal);
   const bool driven = diagnosis.verdict == Verdict::none && !diagnosis.limits.driving.empty();
-  const bool aside =
-      diagnosis.verdict == Verdict::none && diagnosis.limits.set_aside && diagnosis.limits.set_aside->is_large();
+  constexpr double kAboveNoise = 1.2;  // times the noise: less of a gap is one by chance
+  const bool aside = diagnosis.verdict == Verdict::none && diagnosis.limits.set_aside &&
+                     diagnosis.limits.set_aside->is_large() && held_out_gap(set, nominal).value > kAboveNoise;
   if (driven || aside) {  // whatever drives the glider, or acts in what is set aside, has no name
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);

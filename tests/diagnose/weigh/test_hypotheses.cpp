@@ -68,7 +68,7 @@ diagnose::Comparison weighed(const std::vector<std::size_t>& effects, const std:
     }
   }
   for (const diagnose::EffectInfo& info : diagnose::effect_list()) {
-    comparison.odds.push_back(info.odds == nullptr ? 1.0 : info.odds({.clips = 8, .only_falls = false}));
+    comparison.odds.push_back(info.odds == nullptr ? 1.0 : info.odds({.clips = 8, .only_falls = false, .loads = 2.0}));
   }
   diagnose::weigh({}, all_but(effects), comparison);
   return comparison;
