@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
-#include <utility>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
@@ -20,10 +18,6 @@ constexpr Eigen::Index kDrag = 0, kMu = 1;  // indices of the common parameters
 constexpr EffectSlot kDragOfAir = slot_of(ids::quadratic_drag);
 constexpr int kPlaces = 7;   // positions at which a friction along the track is stated
 constexpr int kDrawn = 141;  // positions over which its mean square is taken
-
-constexpr double kOneWay = 0.5;  // of its length: a motion that ends nearer to its start has turned
-
-using ClipDirection = std::pair<std::size_t, int>;  ///< set-up, and sign of the motion
 
 /// A value and its derivatives with respect to the common parameters.
 struct Derived {
@@ -59,44 +53,19 @@ Derived enlarged(const Derived& a, const Derived& b, double sign = 1.0) {
   return {a.value * factor, factor * a.by + sign * a.value * b.by};
 }
 
-/// The standard deviation of two or more values about the mean of each kind; about the mean of all if each is of its
-/// own kind.
-Derived spread(const std::vector<Derived>& values, std::vector<ClipDirection> kinds) {
-  if (std::set(kinds.begin(), kinds.end()).size() == values.size()) kinds.assign(values.size(), {});
-  std::map<ClipDirection, std::pair<double, double>> sums;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sums[kinds[i]].first += values[i].value;
-    sums[kinds[i]].second += 1.0;
-  }
-  const auto freedom = static_cast<double>(values.size() - sums.size());
-  double square = 0.0;
+/// The standard deviation of two or more values.
+Derived spread(const std::vector<Derived>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, square = 0.0;
+  for (const Derived& one : values) mean += one.value / n;
   Derived shown{0.0, Eigen::VectorXd::Zero(values.front().by.size())};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& [sum, count] = sums.at(kinds[i]);
-    const double off = values[i].value - sum / count;
-    square += off * off / freedom;
-    shown.by += off / freedom * values[i].by;
+  for (const Derived& one : values) {
+    square += (one.value - mean) * (one.value - mean) / (n - 1.0);
+    shown.by += (one.value - mean) / (n - 1.0) * one.by;
   }
   shown.value = std::sqrt(square);
   if (shown.value > 0.0) shown.by /= shown.value;
   return shown;
-}
-
-/// The set-up and direction of a clip's longest motion. A friction that all clips of one direction share may stand for
-/// an inclination that is not the stated one, and is no scatter.
-ClipDirection direction_of(const TrackSet& set, std::size_t clip) {
-  ClipDirection of;
-  double longest = 0.0;
-  for (const TrackedMotion& motion : set.motions) {
-    if (motion.clip != clip || motion.x_m.empty()) continue;
-    const auto [low, high] = std::minmax_element(motion.x_m.begin(), motion.x_m.end());
-    if (*high - *low <= longest) continue;
-    longest = *high - *low;
-    // One that turns half-way has no direction.
-    const double along = (motion.x_m.back() - motion.x_m.front()) / longest;
-    of = {motion.group, along > kOneWay ? 1 : along < -kOneWay ? -1 : 0};
-  }
-  return of;
 }
 
 std::string name_of(const TrackSet& set, const Configuration& configuration) {
@@ -122,11 +91,7 @@ std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit&
   for (const std::size_t g : globals) {
     values.push_back(of_mu ? sum(common, sizes.at(g)) : enlarged(common, sizes.at(g)));
   }
-  std::vector<ClipDirection> kinds(values.size());
-  for (std::size_t i = 0; i < kinds.size() && parameter.each == Each::clip; ++i) {
-    kinds[i] = direction_of(set, fit.layout->globals()[globals[i]].index);
-  }
-  std::vector<DiagnosedParameter> shown = {sizes.as(std::string(key), spread(values, std::move(kinds)))};
+  std::vector<DiagnosedParameter> shown = {sizes.as(std::string(key), spread(values))};
   for (std::size_t i = 0; i < globals.size() && !parameter.each_key.empty(); ++i) {
     const std::string name = name_of(set, fit.layout->globals()[globals[i]].configuration);
     shown.push_back(sizes.as(fmt::format("{}.{}", each_key, name), values[i]));

@@ -180,26 +180,6 @@ void add_scatter_beside_statements(const TrackSet& set, const std::vector<Hypoth
   }
 }
 
-/// Clips that scatter, where a friction that drifts, or a friction or drag of each configuration, leads beside another
-/// effect: a few clips that scatter are in order by chance.
-void add_scatter_for_structure(const TrackSet& set, const Work& work, Comparison& comparison) {
-  constexpr std::size_t kMostWithStructure = 2;
-  const std::size_t scatter = effect_index(ids::clip_scatter);
-  for (const Hypothesis& pair : leaders_of(comparison, 2, kMostWithStructure)) {
-    const auto structure = std::ranges::find_if(
-        pair.effects, [](std::size_t e) { return effect_list()[e].among_clips.of != AmongClips::Of::nothing; });
-    if (structure == pair.effects.end()) continue;
-    const std::size_t other = pair.effects.front() == *structure ? pair.effects.back() : pair.effects.front();
-    if (other == scatter || !shows_in_motion(effect_list()[other].search)) continue;
-    if (find(comparison, {other, scatter}) != nullptr) continue;
-    work.look();
-    const Found law = alone(set, other, comparison);
-    if (!std::isfinite(law.fit.cost)) continue;
-    const EffectScan scan = scan_effect(ScoreSpace(set, law.fit), scatter);
-    if (scan.visible && !scan.values.empty()) add(comparison, fit_more(set, law.fit, scan, law.hypothesis));
-  }
-}
-
 }  // namespace
 
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
@@ -252,7 +232,6 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   exchange(set, best_one, left_out, work.at(0.6), comparison);
   if (!without.contains(effect_index(ids::clip_scatter))) {
     add_scatter_beside_statements(set, leaders, work, comparison);
-    add_scatter_for_structure(set, work, comparison);
   }
 }
 

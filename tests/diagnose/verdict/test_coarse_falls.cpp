@@ -52,7 +52,8 @@ TEST_CASE("a fall through air is braked by air, however coarsely its positions a
 }
 
 TEST_CASE("bumper, cable and friction need something that touches the body") {
-  const diagnose::Circumstances on_track{2, false, false}, guided{2, true, false}, free_fall{2, true, true};
+  const diagnose::Circumstances on_track{2, false, false, 2.0}, guided{2, true, false, 2.0},
+      free_fall{2, true, true, 2.0};
   for (const auto& id : {diagnose::ids::end_stop, diagnose::ids::tether, diagnose::ids::load_independent_friction}) {
     const auto odds = diagnose::effect_list()[diagnose::effect_index(id)].odds;
     REQUIRE(odds != nullptr);

@@ -37,26 +37,3 @@ TEST_CASE("a scale that contradicts the stated inclination is weighed beside cli
   }
   CHECK(found > 0);
 }
-
-TEST_CASE("clips whose scatter happens to be in order are weighed as scatter too, beside what else acts") {
-  // A pattern off the plane, and a friction that falls nearly steadily over four clips, by 2 % (rms).
-  tests::ScatteringFriction friction(0.02, {0.026, 0.009, -0.013, -0.022});
-  tests::MadeEffect both;
-  both.force = [&](double m, double, double v, double t) { return friction(m, v, t); };
-  both.seen = [](double x, double) { return x / (1.0 + 0.05 * x); };
-  const auto made =
-      tests::made_experiment(tests::made_launches({0.4}), both, 5, 5e-5, 100, 60.0, 0.05, 0.0, {.mu = 0.02});
-  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const diagnose::Comparison all = diagnose::compare_hypotheses(set);
-  const std::size_t pattern = diagnose::effect_index(diagnose::ids::perspective_error),
-                    drift = diagnose::effect_index(diagnose::ids::friction_drift),
-                    scatter = diagnose::effect_index(diagnose::ids::clip_scatter);
-  const diagnose::Hypothesis *drifts = diagnose::find(all, {pattern, drift}),
-                             *scatters = diagnose::find(all, {pattern, scatter}),
-                             *alone = diagnose::find(all, {pattern});
-  REQUIRE(drifts != nullptr);
-  REQUIRE(scatters != nullptr);
-  REQUIRE(alone != nullptr);
-  CHECK(scatters->gain > alone->gain + 10.0);
-  CHECK(scatters->fit > 0);
-}
