@@ -1,6 +1,7 @@
 #include "validate/study/certify/recording_twin.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <random>
 #include <set>
@@ -64,6 +65,7 @@ std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diag
     for (const sim::MotionSetup& motion : configuration.motions) {
       const auto data = std::find_if(diagnosis.measured.begin(), diagnosis.measured.end(),
                                      [&](const auto& one) { return one.clip == motion.name; });
+      assert(data != diagnosis.measured.end());
       const core::ClipResult& clip = results.clips.at(data->recorded);
       ClipNoise noise = noise_of(clip);
       for (const core::MotionPoint& point : clip.motion) {

@@ -226,6 +226,9 @@ struct Filmed {
     clip.sightings.resize(20);
     clip.images = std::make_shared<core::ImageRecord>();
     results.clips = {clip};
+    diagnose::MeasuredMotion& measured = diagnosis.measured.emplace_back();
+    measured.clip = clip.name;
+    measured.t_s = {0.0, 1.0};
     folder.camera.emplace();
     folder.marker.emplace();
     folder.clips.resize(1);
