@@ -375,7 +375,7 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
   core::CameraMeasurement camera;
   camera.curve.resize(2);
   camera.curve[1].mean_dn = camera.curve[1].variance_dn2 = camera.saturation_dn = 100.0;
-  CHECK(tells(report::camera_report(camera), "do not determine"));
+  CHECK(tells(report::camera_report(camera), "These images do not give the gain"));
   camera.gain_dn_per_e.value = 0.5;
   camera.read_noise_e.value = 7.0;
   camera.full_well_e.value = 10000.0;

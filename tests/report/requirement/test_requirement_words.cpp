@@ -127,7 +127,7 @@ TEST_CASE("a camera at hand, which costs nothing, is in the plot of require, whe
   CHECK_THAT(plot.drawing.script, Contains("set nonlinear x") && Contains("'0' 0,") && !Contains("set logscale x"));
   const report::Page page = report::requirement_report(requirement);
   const std::string& drawn = page.files.at("plots/01-accuracy-reached-against-cost.svg");
-  CHECK_THAT(drawn, Contains(">0</tspan>") && Contains(">10</tspan>"));
+  CHECK_THAT(drawn, Contains("<text>0</text>") && Contains("<text>10</text>"));
   requirement.candidates[0].price = 12.0;
   CHECK_THAT(report::requirement_plot(requirement).drawing.script,
              Contains("set logscale x") && !Contains("set nonlinear x"));
