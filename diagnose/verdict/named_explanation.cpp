@@ -290,11 +290,14 @@ bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const 
       return cause.id == effect_list()[e].id && cause.share < kLittle;
     });
   };
+  const auto is_open_ended = [](std::size_t e) {  // a hard stop may be as stiff as it likes
+    return std::ranges::any_of(effect_list()[e].parameters, &EffectParameter::open_ended);
+  };
   return std::any_of(named.begin(), named.end(), [&](std::size_t e) {
     if (takes_little(e)) return false;
     if (e != named.front() && differs_between_clips(e)) return false;  // beside a law scatter proves nothing
     return (no_noise || has_evidence(comparison, e, sized.set.images)) &&
-           has_certain_size(sized.set, sized.fit, {e}, kClearOfZero);
+           (is_open_ended(e) || has_certain_size(sized.set, sized.fit, {e}, kClearOfZero));
   });
 }
 

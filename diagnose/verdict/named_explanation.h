@@ -64,8 +64,8 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
 bool has_evidence(const Comparison& comparison, std::size_t effect, bool filmed);
 
 /// Whether a verdict may rest on the named causes of a sequence: one of them, the first or a law beside it, takes a
-/// tenth of the gap or more and has evidence, unless the noise is negligible, and a size in the fit that is stated that differs from 0 by two standard
-/// deviations.
+/// tenth of the gap or more and has evidence, unless the noise is negligible, and, unless it is open-ended, a size in
+/// the fit that is stated that differs from 0 by two standard deviations.
 bool may_lead(const BesideRemainder& sized, const Comparison& comparison, const CauseSequence& sequence);
 
 /// The explanation by the causes that keep their name in a sequence; `best` if it was not weighed by itself.
